@@ -1,0 +1,21 @@
+#include "Adapters/BSRMonitor.h"
+
+#include <vtkAlgorithm.h>
+#include <vtkVersionMacros.h>
+
+namespace bsr
+{
+void AlgorithmMonitor::progress(double share)
+{
+  this->Algorithm->UpdateProgress(this->From + share * (this->To - this->From));
+}
+
+bool AlgorithmMonitor::cancelled()
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230111)
+  return this->Algorithm->CheckAbort();
+#else
+  return this->Algorithm->GetAbortExecute() != 0;
+#endif
+}
+} // namespace bsr
