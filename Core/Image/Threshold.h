@@ -1,0 +1,34 @@
+#pragma once
+
+#include "Common/Monitor.h"
+#include "Common/Status.h"
+#include "Image/ImageView.h"
+
+#include <cstdint>
+
+namespace bsr
+{
+/// Smallest and largest value, and whether any value is NaN or infinite (those are not counted).
+struct ValueRange
+{
+  double Min = 0.0;
+  double Max = 0.0;
+  std::int64_t NotFinite = 0;
+};
+
+template <class T>
+ValueRange valueRange(const ImageView<const T>& image);
+
+/**
+ * Otsu's threshold: the value between two classes that maximizes the variance between them, from a
+ * histogram of every integer value (up to 65536 of them) or of 4096 bins. An object is what lies at
+ * or above it. Fails on an empty, a constant and a not finite image.
+ */
+template <class T>
+Result<double> otsuThreshold(const ImageView<const T>& image, Monitor& monitor);
+
+/// Mask of the voxels with value >= threshold.
+template <class T>
+Result<Volume<std::uint8_t>> thresholdMask(
+  const ImageView<const T>& image, double threshold, Monitor& monitor);
+} // namespace bsr

@@ -1,0 +1,60 @@
+#include "ImageTestHelpers.h"
+
+#include "Image/Threshold.h"
+
+#include <gtest/gtest.h>
+
+using namespace bsrtest;
+
+namespace
+{
+template <class T>
+bsr::Volume<T> twoClasses(double low, double high, double noise)
+{
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal(0.0, noise);
+  return makeVolume<T>({{30, 20, 20}}, {{1.0, 1.0, 1.0}},
+    [&](const bsr::Int3& p) { return static_cast<T>((p[0] < 21 ? low : high) + normal(random)); });
+}
+
+template <class T>
+double otsu(const bsr::Volume<T>& v)
+{
+  bsr::Monitor monitor;
+  const auto t = bsr::otsuThreshold<T>(v.view(), monitor);
+  EXPECT_TRUE(t) << t.status().message();
+  return *t;
+}
+} // namespace
+
+TEST(Threshold, OtsuSeparatesTwoClasses)
+{
+  EXPECT_NEAR(otsu(twoClasses<std::uint16_t>(9000, 30000, 2500)), 19500, 800);
+  EXPECT_NEAR(otsu(twoClasses<short>(-1000, 400, 100)), -300, 60);
+  EXPECT_NEAR(otsu(twoClasses<float>(0.001, 0.003, 0.0002)), 0.002, 0.0001);
+  EXPECT_NEAR(otsu(twoClasses<double>(-4e9, 4e9, 1e8)), 0.0, 4e8);
+  EXPECT_NEAR(otsu(twoClasses<std::uint8_t>(0, 1, 0)), 0.5, 1e-12);
+}
+
+TEST(Threshold, OtsuRefusesWhatHasNoClasses)
+{
+  bsr::Monitor monitor;
+  auto v = twoClasses<float>(5, 5, 0);
+  EXPECT_EQ(
+    bsr::otsuThreshold<float>(v.view(), monitor).status().code(), bsr::StatusCode::InvalidInput);
+  v.Data[3] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_NE(
+    bsr::otsuThreshold<float>(v.view(), monitor).status().message().find("NaN"), std::string::npos);
+  EXPECT_EQ(bsr::otsuThreshold<float>({}, monitor).status().code(), bsr::StatusCode::InvalidInput);
+}
+
+TEST(Threshold, MaskIncludesTheThreshold)
+{
+  bsr::Monitor monitor;
+  const auto v = makeVolume<int>(
+    {{5, 1, 1}}, {{1.0, 1.0, 1.0}}, [](const bsr::Int3& p) { return static_cast<int>(p[0]); });
+  const auto mask = bsr::thresholdMask<int>(v.view(), 3.0, monitor);
+  ASSERT_TRUE(mask);
+  EXPECT_EQ(mask->Data[2], 0);
+  EXPECT_EQ(mask->Data[3], 1);
+}
