@@ -126,7 +126,7 @@ inline void addBall(SplineModel& m, double radius, int cells, int segments, bool
       [&](int i, int j)
       {
         std::array<int, 3> c{};
-        const bool swap = high == inward;
+        const bool swap = high != inward;
         c[axis] = high ? n : -n;
         c[(axis + 1) % 3] = 2 * (swap ? i : j) - n;
         c[(axis + 2) % 3] = 2 * (swap ? j : i) - n;
