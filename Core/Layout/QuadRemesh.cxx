@@ -1,0 +1,136 @@
+#include "Layout/QuadRemesh.h"
+
+#include "Layout/PairTriangles.h"
+#include "Layout/RelaxLayout.h"
+#include "Mesh/Decimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bsr
+{
+namespace
+{
+constexpr int MostQuads = 200000;
+
+Status checkOptions(const QuadRemeshOptions& o)
+{
+  if (o.NumberOfQuads < 6 || o.NumberOfQuads > MostQuads)
+  {
+    return Status::invalidParameter("NumberOfQuads is " + std::to_string(o.NumberOfQuads) +
+                                    "; choose 6 to " + std::to_string(MostQuads) + ".");
+  }
+  if (!(o.FeatureAngle > 0.0))
+  {
+    return Status::invalidParameter("FeatureAngle must be above 0 degrees (180: no features).");
+  }
+  return Status::ok();
+}
+
+/// The layout of one component, by the fallback: pairs of triangles give four quads each, so half
+/// as many triangles as quads are wanted; the edge length is corrected until the count fits.
+Result<LayoutDraft> pairedLayout(
+  const TriangleSurface& s, const ReferenceSurface& reference, int quads, Monitor& monitor)
+{
+  constexpr int tries = 5;
+  const double triangle = s.area() / (0.5 * quads);
+  double edge = std::sqrt(4.0 / std::sqrt(3.0) * triangle);
+  LayoutDraft best;
+  double bestMiss = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < tries && bestMiss > 0.05; ++i)
+  {
+    SubMonitor part(monitor, 0.5 * i / tries, 0.5 * (i + 1) / tries);
+    TriangleSurface coarse = s;
+    if (Status status = remesh(coarse, reference, edge, 8, part); !status)
+    {
+      return status;
+    }
+    LayoutDraft draft = pairTriangles(coarse);
+    const double ratio = static_cast<double>(draft.Mesh.Quads.size()) / quads;
+    const double miss = std::abs(std::log(ratio));
+    if (miss < bestMiss)
+    {
+      bestMiss = miss;
+      best = std::move(draft);
+    }
+    edge *= std::clamp(std::sqrt(ratio), 0.6, 1.6);
+  }
+  SubMonitor second(monitor, 0.5, 1.0);
+  if (Status status = relaxLayout(best, reference, 40, second); !status)
+  {
+    return status;
+  }
+  return best;
+}
+
+void append(QuadMesh& all, const QuadMesh& part)
+{
+  const auto base = static_cast<Index>(all.Points.size());
+  all.Points.insert(all.Points.end(), part.Points.begin(), part.Points.end());
+  all.Region.insert(all.Region.end(), part.Region.begin(), part.Region.end());
+  for (const auto& q : part.Quads)
+  {
+    all.Quads.push_back({q[0] + base, q[1] + base, q[2] + base, q[3] + base});
+  }
+}
+} // namespace
+
+Result<QuadLayout> quadRemesh(
+  const TriangleMesh& mesh, const QuadRemeshOptions& options, Monitor& monitor)
+{
+  if (Status s = checkOptions(options); !s)
+  {
+    return s;
+  }
+  QuadLayout layout;
+  auto surfaces = buildSurfaces(mesh, options.FeatureAngle, layout.Repairs, monitor);
+  if (!surfaces)
+  {
+    return surfaces.status();
+  }
+  double total = 0.0;
+  for (const TriangleSurface& s : *surfaces)
+  {
+    total += s.area();
+  }
+  if (!(total > 0.0))
+  {
+    return Status::invalidInput("The surface has no area.");
+  }
+  double done = 0.0;
+  for (TriangleSurface& s : *surfaces)
+  {
+    const double share = s.area() / total;
+    SubMonitor part(monitor, done, done + share);
+    done += share;
+    const int quads = std::max(24, static_cast<int>(std::lround(share * options.NumberOfQuads)));
+    const int euler = s.eulerCharacteristic();
+    SubMonitor decimating(part, 0.0, 0.5);
+    if (Status status = decimate(s, std::max(20000, 60 * quads), decimating); !status)
+    {
+      return status;
+    }
+    const ReferenceSurface reference(s);
+    SubMonitor laying(part, 0.5, 0.95);
+    auto draft = pairedLayout(s, reference, quads, laying);
+    if (!draft)
+    {
+      return draft.status();
+    }
+    const LayoutReport report = checkLayout(draft->Mesh);
+    if (!report.Valid || report.Euler != euler)
+    {
+      return Status::failed("No valid layout was found: " +
+                            (report.Valid ? std::string("the topology changed") : report.Problem) +
+                            "; try another NumberOfQuads or Seed.");
+    }
+    const LayoutDistance d = layoutDistance(draft->Mesh, s, reference);
+    layout.Distance.Maximum = std::max(layout.Distance.Maximum, d.Maximum);
+    layout.Distance.Mean += share * d.Mean;
+    layout.Stages.push_back(LayoutStage::Paired);
+    append(layout.Mesh, draft->Mesh);
+  }
+  layout.Report = checkLayout(layout.Mesh);
+  return layout;
+}
+} // namespace bsr

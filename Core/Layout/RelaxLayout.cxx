@@ -1,0 +1,207 @@
+#include "Layout/RelaxLayout.h"
+
+#include "Common/Parallel.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace bsr
+{
+namespace
+{
+constexpr double GoodJacobian = 0.35;
+
+class Relaxer
+{
+public:
+  Relaxer(LayoutDraft& draft, const ReferenceSurface& reference)
+      : Draft(draft), Reference(reference), Around(draft.Mesh.Points.size())
+  {
+    double sum = 0.0;
+    for (std::size_t q = 0; q < draft.Mesh.Quads.size(); ++q)
+    {
+      for (int k = 0; k < 4; ++k)
+      {
+        this->Around[draft.Mesh.Quads[q][k]].push_back({static_cast<Index>(q), k});
+      }
+      const auto& c = draft.Mesh.Quads[q];
+      const auto& p = draft.Mesh.Points;
+      sum += std::sqrt(0.5 * (p[c[2]] - p[c[0]]).cross(p[c[3]] - p[c[1]]).norm());
+    }
+    this->Side = sum / static_cast<double>(std::max<std::size_t>(draft.Mesh.Quads.size(), 1));
+  }
+
+  /// One step of every vertex towards the rectangles its quads ask for.
+  void relaxOnce(double share)
+  {
+    std::vector<std::array<Vec3, 4>> asked(this->Draft.Mesh.Quads.size());
+    parallelFor(0, static_cast<std::int64_t>(asked.size()), 256,
+      [&](std::int64_t first, std::int64_t last)
+      {
+        for (std::int64_t q = first; q < last; ++q)
+        {
+          asked[q] = this->rectangle(static_cast<Index>(q));
+        }
+      });
+    std::vector<Vec3> moved = this->Draft.Mesh.Points;
+    parallelFor(0, static_cast<std::int64_t>(moved.size()), 64,
+      [&](std::int64_t first, std::int64_t last)
+      {
+        for (std::int64_t v = first; v < last; ++v)
+        {
+          Vec3 sum = Vec3::Zero();
+          for (const Corner& c : this->Around[v])
+          {
+            sum += asked[c.Quad][c.At];
+          }
+          const Vec3 mean = sum / static_cast<double>(this->Around[v].size());
+          moved[v] += share * (mean - moved[v]);
+        }
+      });
+    for (std::size_t v = 0; v < moved.size(); ++v)
+    {
+      if (this->Draft.Kind[v] == VertexKind::Fixed)
+      {
+        moved[v] = this->Draft.Mesh.Points[v];
+      }
+    }
+    this->Draft.Mesh.Points.swap(moved);
+    this->Draft.project(this->Reference);
+  }
+
+  /// Moves the vertices of bad quads to better places; returns the number of moves.
+  int mend()
+  {
+    int moves = 0;
+    for (std::size_t v = 0; v < this->Around.size(); ++v)
+    {
+      const auto i = static_cast<Index>(v);
+      if (this->Draft.Kind[v] != VertexKind::Fixed && this->worst(i) < GoodJacobian)
+      {
+        moves += this->search(i);
+      }
+    }
+    return moves;
+  }
+
+private:
+  struct Corner
+  {
+    Index Quad;
+    int At;
+  };
+
+  std::array<Vec3, 4> rectangle(Index quad) const
+  {
+    const auto& q = this->Draft.Mesh.Quads[quad];
+    std::array<Vec3, 4> p;
+    for (int k = 0; k < 4; ++k)
+    {
+      p[k] = this->Draft.Mesh.Points[q[k]];
+    }
+    const Vec3 center = 0.25 * (p[0] + p[1] + p[2] + p[3]);
+    const Vec3 u = 0.5 * (p[1] + p[2] - p[0] - p[3]);
+    const Vec3 v = 0.5 * (p[2] + p[3] - p[0] - p[1]);
+    const Vec3 n = u.cross(v).normalized();
+    // The square that fits best: u and v turned back by 90 degrees agree on its axis.
+    const Vec3 axis = (u - n.cross(v)).normalized();
+    const Vec3 other = n.cross(axis);
+    if (!axis.allFinite() || !other.allFinite())
+    {
+      return p;
+    }
+    const double lu = 0.7 * std::abs(axis.dot(u)) + 0.3 * this->Side;
+    const double lv = 0.7 * std::abs(other.dot(v)) + 0.3 * this->Side;
+    const Vec3 a = 0.5 * lu * axis;
+    const Vec3 b = 0.5 * lv * other;
+    return {center - a - b, center + a - b, center + a + b, center - a + b};
+  }
+
+  double worst(Index v) const
+  {
+    double w = 1.0;
+    for (const Corner& c : this->Around[v])
+    {
+      w = std::min(w, scaledJacobian(this->Draft.Mesh, c.Quad));
+    }
+    return w;
+  }
+
+  Vec3 onSurface(Index v, const Vec3& p) const
+  {
+    return this->Draft.Kind[v] == VertexKind::Crease ? this->Reference.Creases.nearest(p).Point
+                                                     : this->Reference.Faces.nearest(p).Point;
+  }
+
+  int search(Index v)
+  {
+    Vec3& p = this->Draft.Mesh.Points[v];
+    Vec3 normal = Vec3::Zero();
+    double step = 0.0;
+    for (const Corner& c : this->Around[v])
+    {
+      const auto& q = this->Draft.Mesh.Quads[c.Quad];
+      const Vec3 e = this->Draft.Mesh.Points[q[(c.At + 1) % 4]] - p;
+      const Vec3 f = this->Draft.Mesh.Points[q[(c.At + 3) % 4]] - p;
+      normal += e.cross(f);
+      step = std::max(step, 0.3 * e.norm());
+    }
+    const Vec3 x = normal.unitOrthogonal();
+    const Vec3 y = normal.normalized().cross(x);
+    double best = this->worst(v);
+    int moves = 0;
+    for (int round = 0; round < 6; ++round)
+    {
+      Vec3 bestPoint = p;
+      const Vec3 from = p;
+      for (int k = 0; k < 8; ++k)
+      {
+        const double angle = k * M_PI / 4.0;
+        p = this->onSurface(v, from + step * (std::cos(angle) * x + std::sin(angle) * y));
+        const double w = this->worst(v);
+        if (w > best + 1e-6)
+        {
+          best = w;
+          bestPoint = p;
+        }
+      }
+      p = bestPoint;
+      moves += bestPoint != from;
+      step *= bestPoint == from ? 0.5 : 1.0;
+    }
+    return moves;
+  }
+
+  LayoutDraft& Draft;
+  const ReferenceSurface& Reference;
+  std::vector<std::vector<Corner>> Around;
+  double Side = 0.0;
+};
+} // namespace
+
+Status relaxLayout(
+  LayoutDraft& draft, const ReferenceSurface& reference, int iterations, Monitor& monitor)
+{
+  Relaxer relaxer(draft, reference);
+  draft.project(reference);
+  for (int i = 0; i < iterations; ++i)
+  {
+    relaxer.relaxOnce(0.7);
+    if (monitor.cancelled())
+    {
+      return Status::cancelled();
+    }
+    monitor.progress((i + 1.0) / iterations);
+  }
+  for (int i = 0; i < 30 && relaxer.mend() > 0; ++i)
+  {
+    if (monitor.cancelled())
+    {
+      return Status::cancelled();
+    }
+  }
+  return Status::ok();
+}
+} // namespace bsr

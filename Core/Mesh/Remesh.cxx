@@ -1,0 +1,278 @@
+#include "Mesh/Remesh.h"
+
+#include "Common/Parallel.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+
+namespace bsr
+{
+namespace
+{
+class Remesher
+{
+public:
+  Remesher(TriangleSurface& s, const ReferenceSurface& reference, double length)
+      : S(s), Reference(reference), Length(length)
+  {
+  }
+
+  void splitLong()
+  {
+    const double limit = 4.0 / 3.0 * this->Length;
+    for (int pass = 0; pass < 12; ++pass)
+    {
+      bool any = false;
+      const auto count = static_cast<Index>(this->S.Vertex.size());
+      for (Index h = 0; h < count; ++h)
+      {
+        if (this->S.Vertex[h] >= 0 && h < this->S.Opposite[h] && this->real(h) &&
+            this->length(h) > limit && this->longestAround(h))
+        {
+          const Vec3 middle =
+            0.5 * (this->S.Points[this->S.start(h)] + this->S.Points[this->S.end(h)]);
+          this->S.split(h, middle);
+          any = true;
+        }
+      }
+      if (!any)
+      {
+        break;
+      }
+    }
+  }
+
+  void collapseShort()
+  {
+    const double low = 0.8 * this->Length;
+    const auto count = static_cast<Index>(this->S.Vertex.size());
+    for (Index e = 0; e < count; ++e)
+    {
+      if (this->S.Vertex[e] < 0 || !this->real(e) || this->length(e) >= low)
+      {
+        continue;
+      }
+      const int degree = this->S.creaseDegree(this->S.start(e));
+      const int endDegree = this->S.creaseDegree(this->S.end(e));
+      if (degree != 0 && endDegree == 0)
+      {
+        continue; // the other half-edge of the edge serves
+      }
+      const Vec3 x =
+        degree == endDegree && (degree == 0 || degree == 2)
+          ? Vec3(0.5 * (this->S.Points[this->S.start(e)] + this->S.Points[this->S.end(e)]))
+          : this->S.Points[this->S.end(e)];
+      if (this->S.canCollapse(e) && this->fits(e, x))
+      {
+        this->S.collapse(e, x);
+      }
+    }
+  }
+
+  void flipToRegular()
+  {
+    const auto count = static_cast<Index>(this->S.Vertex.size());
+    for (Index h = 0; h < count; ++h)
+    {
+      if (this->S.Vertex[h] < 0 || h > this->S.Opposite[h] || !this->real(h) || !this->S.canFlip(h))
+      {
+        continue;
+      }
+      const Index o = this->S.Opposite[h];
+      const int gain = this->excess(this->S.start(h), -1) + this->excess(this->S.end(h), -1) +
+                       this->excess(this->S.apex(h), 1) + this->excess(this->S.apex(o), 1);
+      if (gain < 0 && this->flipSound(h))
+      {
+        this->S.flip(h);
+      }
+    }
+  }
+
+  void relax(Monitor& monitor, Status& status)
+  {
+    TriangleSurface& s = this->S;
+    std::vector<Vec3> moved = s.Points;
+    parallelFor(0, s.vertices(), 256,
+      [&](std::int64_t first, std::int64_t last)
+      {
+        for (std::int64_t v = first; v < last; ++v)
+        {
+          moved[v] = this->relaxed(static_cast<Index>(v));
+        }
+      });
+    if (monitor.cancelled())
+    {
+      status = Status::cancelled();
+      return;
+    }
+    s.Points.swap(moved);
+  }
+
+private:
+  bool real(Index h) const
+  {
+    return !this->S.Virtual[this->S.start(h)] && !this->S.Virtual[this->S.end(h)];
+  }
+  double length(Index h) const
+  {
+    return (this->S.Points[this->S.start(h)] - this->S.Points[this->S.end(h)]).norm();
+  }
+  /// The longest edge of one of its triangles: splitting only those keeps angles sound.
+  bool longestAround(Index h) const
+  {
+    for (Index x : {h, this->S.Opposite[h]})
+    {
+      if (this->S.hole(x / 3) || (this->length(TriangleSurface::next(x)) <= this->length(x) &&
+                                   this->length(TriangleSurface::prev(x)) <= this->length(x)))
+      {
+        return true;
+      }
+    }
+    return false;
+  }
+  /// Change of the squared distance to the ideal valence when it changes by d.
+  int excess(Index v, int d) const
+  {
+    const int ideal = 6;
+    const int n = this->S.valence(v);
+    return (n + d - ideal) * (n + d - ideal) - (n - ideal) * (n - ideal);
+  }
+  static double quality(const Vec3& a, const Vec3& b, const Vec3& c)
+  {
+    const double l =
+      std::max({(a - b).squaredNorm(), (b - c).squaredNorm(), (c - a).squaredNorm()});
+    return l > 0.0 ? (b - a).cross(c - a).norm() / l : 0.0;
+  }
+  bool fits(Index h, const Vec3& x) const
+  {
+    return this->fanFits(this->S.start(h), this->S.end(h), x) &&
+           this->fanFits(this->S.end(h), this->S.start(h), x) && this->valenceFits(h);
+  }
+  bool valenceFits(Index h) const
+  {
+    const int merged = this->S.valence(this->S.start(h)) + this->S.valence(this->S.end(h)) - 4;
+    return merged <= 9 && this->S.valence(this->S.apex(h)) > 4 &&
+           this->S.valence(this->S.apex(this->S.Opposite[h])) > 4;
+  }
+  bool fanFits(Index v, Index other, const Vec3& x) const
+  {
+    const TriangleSurface& s = this->S;
+    const double limit = 4.0 / 3.0 * this->Length;
+    bool fits = true;
+    s.around(v,
+      [&](Index h)
+      {
+        const Index b = s.end(h);
+        const Index c = s.apex(h);
+        if (!fits || b == other || c == other || s.hole(h / 3))
+        {
+          return;
+        }
+        const Vec3 before = (s.Points[b] - s.Points[v]).cross(s.Points[c] - s.Points[v]);
+        const Vec3 after = (s.Points[b] - x).cross(s.Points[c] - x);
+        fits = (s.Points[b] - x).norm() <= limit &&
+               before.dot(after) >= 0.5 * before.norm() * after.norm();
+      });
+    return fits;
+  }
+  bool flipSound(Index h) const
+  {
+    const TriangleSurface& s = this->S;
+    const Vec3& a = s.Points[s.start(h)];
+    const Vec3& b = s.Points[s.end(h)];
+    const Vec3& c = s.Points[s.apex(h)];
+    const Vec3& d = s.Points[s.apex(s.Opposite[h])];
+    const Vec3 n = (b - a).cross(c - a).normalized() + (d - a).cross(b - a).normalized();
+    const Vec3 n0 = (d - a).cross(c - a);
+    const Vec3 n1 = (c - b).cross(d - b);
+    const double worst = std::min(quality(a, d, c), quality(b, c, d));
+    return n0.dot(n) > 0.7 * n0.norm() * n.norm() && n1.dot(n) > 0.7 * n1.norm() * n.norm() &&
+           worst > std::min(0.35, 0.9 * std::min(quality(a, b, c), quality(a, d, b)));
+  }
+  Vec3 relaxed(Index v) const
+  {
+    const TriangleSurface& s = this->S;
+    const int degree = s.Out[v] < 0 ? 0 : s.creaseDegree(v);
+    if (s.Out[v] < 0 || s.Virtual[v] || (degree != 0 && degree != 2))
+    {
+      return s.Points[v];
+    }
+    Vec3 sum = Vec3::Zero();
+    Vec3 normal = Vec3::Zero();
+    double weight = 0.0;
+    s.around(v,
+      [&](Index h)
+      {
+        if (degree == 2)
+        {
+          sum += s.Crease[h] * s.Points[s.end(h)];
+          weight += s.Crease[h];
+          return;
+        }
+        const Vec3 n = s.areaNormal(h / 3);
+        const double area = n.norm();
+        sum += area * (s.Points[s.start(h)] + s.Points[s.end(h)] + s.Points[s.apex(h)]) / 3.0;
+        weight += area;
+        normal += n;
+      });
+    if (weight <= 0.0)
+    {
+      return s.Points[v];
+    }
+    const Vec3 target = sum / weight;
+    if (degree == 2)
+    {
+      return this->Reference.Creases.nearest(target).Point;
+    }
+    const Vec3 n = normal.normalized();
+    const Vec3 step = target - s.Points[v];
+    return this->Reference.Faces.nearest(s.Points[v] + step - n.dot(step) * n).Point;
+  }
+
+  TriangleSurface& S;
+  const ReferenceSurface& Reference;
+  double Length;
+};
+} // namespace
+
+ReferenceSurface::ReferenceSurface(const TriangleSurface& s)
+{
+  std::vector<std::array<Index, 3>> faces;
+  std::vector<std::array<Index, 3>> creases;
+  for (Index f = 0; f < s.faces(); ++f)
+  {
+    if (s.alive(f) && !s.hole(f))
+    {
+      faces.push_back(s.corners(f));
+    }
+  }
+  for (Index h = 0; h < static_cast<Index>(s.Vertex.size()); ++h)
+  {
+    if (s.Vertex[h] >= 0 && s.Crease[h] && h < s.Opposite[h])
+    {
+      creases.push_back({s.start(h), s.end(h), s.end(h)});
+    }
+  }
+  this->Faces = TriangleTree(s.Points, std::move(faces));
+  this->Creases = TriangleTree(s.Points, std::move(creases));
+}
+
+Status remesh(TriangleSurface& s, const ReferenceSurface& reference, double edgeLength,
+  int iterations, Monitor& monitor)
+{
+  Status status;
+  for (int i = 0; i < iterations && status; ++i)
+  {
+    Remesher r(s, reference, edgeLength);
+    r.splitLong();
+    r.collapseShort();
+    r.flipToRegular();
+    r.relax(monitor, status);
+    r.relax(monitor, status);
+    s.compact();
+    monitor.progress((i + 1.0) / iterations);
+  }
+  return status;
+}
+} // namespace bsr

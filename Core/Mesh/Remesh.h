@@ -1,0 +1,28 @@
+#pragma once
+
+#include "Common/Monitor.h"
+#include "Common/Status.h"
+#include "Mesh/TriangleSurface.h"
+#include "Mesh/TriangleTree.h"
+
+namespace bsr
+{
+/// What vertices of a layout are projected onto: the surface and, for those on creases, the
+/// creases.
+struct ReferenceSurface
+{
+  TriangleTree Faces;
+  TriangleTree Creases;
+
+  ReferenceSurface() = default;
+  explicit ReferenceSurface(const TriangleSurface& s);
+};
+
+/**
+ * Isotropic remeshing (Botsch and Kobbelt 2004): splits long edges, collapses short ones, flips
+ * towards valence 6 and relaxes tangentially, each vertex on `reference`. Topology, creases
+ * and holes stay. `s` is compact afterwards.
+ */
+Status remesh(TriangleSurface& s, const ReferenceSurface& reference, double edgeLength,
+  int iterations, Monitor& monitor);
+} // namespace bsr

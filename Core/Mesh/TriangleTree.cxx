@@ -1,0 +1,171 @@
+#include "Mesh/TriangleTree.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <numeric>
+
+namespace bsr
+{
+namespace
+{
+constexpr Index LeafSize = 6;
+
+Vec3 nearestOnSegment(const Vec3& p, const Vec3& a, const Vec3& b)
+{
+  const Vec3 d = b - a;
+  const double length2 = d.squaredNorm();
+  const double t = length2 > 0.0 ? std::clamp((p - a).dot(d) / length2, 0.0, 1.0) : 0.0;
+  return a + t * d;
+}
+
+double squaredDistanceToBox(const Vec3& p, const Vec3& low, const Vec3& high)
+{
+  return (low - p).cwiseMax(p - high).cwiseMax(0.0).squaredNorm();
+}
+} // namespace
+
+Vec3 nearestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
+{
+  const Vec3 e0 = b - a;
+  const Vec3 e1 = c - a;
+  const Vec3 n = e0.cross(e1);
+  const double nn = n.squaredNorm();
+  const double longest = std::max(e0.squaredNorm(), e1.squaredNorm());
+  if (nn > 1e-24 * longest * longest)
+  {
+    const Vec3 w = p - a;
+    const double beta = w.cross(e1).dot(n) / nn;
+    const double gamma = e0.cross(w).dot(n) / nn;
+    if (beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0)
+    {
+      return a + beta * e0 + gamma * e1;
+    }
+  }
+  Vec3 best = nearestOnSegment(p, a, b);
+  for (const Vec3& q : {nearestOnSegment(p, b, c), nearestOnSegment(p, c, a)})
+  {
+    if ((q - p).squaredNorm() < (best - p).squaredNorm())
+    {
+      best = q;
+    }
+  }
+  return best;
+}
+
+TriangleTree::TriangleTree(std::vector<Vec3> points, std::vector<std::array<Index, 3>> triangles)
+    : Points(std::move(points)), Triangles(std::move(triangles))
+{
+  std::vector<Vec3> centers;
+  centers.reserve(this->Triangles.size());
+  for (const auto& t : this->Triangles)
+  {
+    centers.push_back((this->Points[t[0]] + this->Points[t[1]] + this->Points[t[2]]) / 3.0);
+  }
+  this->Order.resize(this->Triangles.size());
+  std::iota(this->Order.begin(), this->Order.end(), 0);
+  if (!this->Order.empty())
+  {
+    this->Nodes.reserve(this->Triangles.size());
+    this->build(this->Order, centers, 0, static_cast<Index>(this->Order.size()));
+  }
+}
+
+void TriangleTree::grow(Node& node, Index triangle) const
+{
+  for (Index v : this->Triangles[triangle])
+  {
+    node.Low = node.Low.cwiseMin(this->Points[v]);
+    node.High = node.High.cwiseMax(this->Points[v]);
+  }
+}
+
+Index TriangleTree::build(
+  std::vector<Index>& order, const std::vector<Vec3>& centers, Index first, Index last)
+{
+  const auto id = static_cast<Index>(this->Nodes.size());
+  Node node;
+  node.Low = Vec3::Constant(std::numeric_limits<double>::infinity());
+  node.High = -node.Low;
+  Vec3 low = node.Low;
+  Vec3 high = node.High;
+  for (Index i = first; i < last; ++i)
+  {
+    this->grow(node, order[i]);
+    low = low.cwiseMin(centers[order[i]]);
+    high = high.cwiseMax(centers[order[i]]);
+  }
+  this->Nodes.push_back(node);
+  if (last - first <= LeafSize)
+  {
+    this->Nodes[id].First = first;
+    this->Nodes[id].Count = last - first;
+    return id;
+  }
+  int axis = 0;
+  (high - low).maxCoeff(&axis);
+  const Index middle = first + (last - first) / 2;
+  std::nth_element(order.begin() + first, order.begin() + middle, order.begin() + last,
+    [&](Index a, Index b)
+    { return centers[a][axis] != centers[b][axis] ? centers[a][axis] < centers[b][axis] : a < b; });
+  this->build(order, centers, first, middle);
+  const Index second = this->build(order, centers, middle, last);
+  this->Nodes[id].First = second;
+  return id;
+}
+
+NearestOnTriangle TriangleTree::nearest(const Vec3& p) const
+{
+  NearestOnTriangle best;
+  if (this->Nodes.empty())
+  {
+    return best;
+  }
+  std::array<std::pair<Index, double>, 96> stack;
+  int top = 0;
+  stack[top++] = {0, 0.0};
+  while (top > 0)
+  {
+    const auto [id, bound] = stack[--top];
+    if (bound >= best.SquaredDistance)
+    {
+      continue;
+    }
+    const Node& node = this->Nodes[id];
+    for (Index i = node.First; i < node.First + node.Count; ++i)
+    {
+      const auto& t = this->Triangles[this->Order[i]];
+      const Vec3 q =
+        nearestOnTriangle(p, this->Points[t[0]], this->Points[t[1]], this->Points[t[2]]);
+      const double d = (q - p).squaredNorm();
+      if (d < best.SquaredDistance)
+      {
+        best = {this->Order[i], q, d};
+      }
+    }
+    if (node.Count == 0)
+    {
+      std::pair<Index, double> a{id + 1, 0.0};
+      std::pair<Index, double> b{node.First, 0.0};
+      a.second = squaredDistanceToBox(p, this->Nodes[a.first].Low, this->Nodes[a.first].High);
+      b.second = squaredDistanceToBox(p, this->Nodes[b.first].Low, this->Nodes[b.first].High);
+      if (a.second < b.second)
+      {
+        std::swap(a, b);
+      }
+      stack[top++] = a;
+      stack[top++] = b;
+    }
+  }
+  return best;
+}
+
+Vec3 TriangleTree::normal(Index triangle) const
+{
+  const auto& t = this->Triangles[triangle];
+  const Vec3 n =
+    (this->Points[t[1]] - this->Points[t[0]]).cross(this->Points[t[2]] - this->Points[t[0]]);
+  const double length = n.norm();
+  return length > 0.0 ? Vec3(n / length) : Vec3(Vec3::Zero());
+}
+} // namespace bsr

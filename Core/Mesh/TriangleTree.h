@@ -1,0 +1,52 @@
+#pragma once
+
+#include "Common/Types.h"
+
+#include <limits>
+
+namespace bsr
+{
+/// The nearest point of a triangle soup.
+struct NearestOnTriangle
+{
+  Index Triangle = -1;
+  Vec3 Point = Vec3::Zero();
+  double SquaredDistance = std::numeric_limits<double>::infinity();
+};
+
+/// The point of triangle (a, b, c), degenerate or not, nearest to p.
+Vec3 nearestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
+/**
+ * A bounding-volume tree for exact nearest-point queries on triangles (or on segments, given as
+ * triangles that name a corner twice). Read-only once built: queries may run in parallel.
+ */
+class TriangleTree
+{
+public:
+  TriangleTree() = default;
+  TriangleTree(std::vector<Vec3> points, std::vector<std::array<Index, 3>> triangles);
+
+  bool empty() const { return this->Triangles.empty(); }
+  NearestOnTriangle nearest(const Vec3& p) const;
+  /// Unit normal of a triangle (zero for degenerate ones).
+  Vec3 normal(Index triangle) const;
+
+private:
+  struct Node
+  {
+    Eigen::Vector3d Low;
+    Eigen::Vector3d High;
+    Index First = 0; ///< first triangle of a leaf, or the second child
+    Index Count = 0; ///< triangles of a leaf, 0 for inner nodes (first child: the next node)
+  };
+
+  Index build(std::vector<Index>& order, const std::vector<Vec3>& centers, Index first, Index last);
+  void grow(Node& node, Index triangle) const;
+
+  std::vector<Vec3> Points;
+  std::vector<std::array<Index, 3>> Triangles;
+  std::vector<Index> Order;
+  std::vector<Node> Nodes;
+};
+} // namespace bsr

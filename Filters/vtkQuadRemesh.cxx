@@ -1,0 +1,106 @@
+#include "vtkQuadRemesh.h"
+
+#include "Adapters/BSRMeshAdapter.h"
+#include "Adapters/BSRMonitor.h"
+#include "Layout/QuadRemesh.h"
+
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+
+#include <chrono>
+
+vtkStandardNewMacro(vtkQuadRemesh);
+
+namespace
+{
+template <class Array, class Value>
+void addArray(vtkDataSetAttributes* to, const char* name, const std::vector<Value>& values)
+{
+  vtkNew<Array> a;
+  a->SetName(name);
+  a->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
+  std::copy(values.begin(), values.end(), a->GetPointer(0));
+  to->AddArray(a);
+}
+
+void report(const bsr::QuadLayout& layout, vtkFieldData* field)
+{
+  const bsr::LayoutReport& r = layout.Report;
+  bsr::addField(field, "Irregular", r.Irregular);
+  bsr::addField(field, "EulerCharacteristic", r.Euler);
+  bsr::addField(field, "Hausdorff", layout.Distance.Maximum);
+  bsr::addField(field, "MeanDistance", layout.Distance.Mean);
+  bsr::addField(field, "MinScaledJacobian", r.MinJacobian);
+  bsr::addField(field, "MeanAngleDeviation", r.MeanAngleDeviation);
+  std::vector<double> stages;
+  for (bsr::LayoutStage s : layout.Stages)
+  {
+    stages.push_back(static_cast<double>(s));
+  }
+  bsr::addField(field, "LayoutStage", stages);
+  const bsr::RepairReport& repairs = layout.Repairs;
+  bsr::addField(field, "Repairs",
+    {static_cast<double>(repairs.MergedPoints), static_cast<double>(repairs.DegenerateFaces),
+      static_cast<double>(repairs.DuplicateFaces), static_cast<double>(repairs.TurnedFaces),
+      static_cast<double>(repairs.SplitVertices)});
+}
+} // namespace
+
+int vtkQuadRemesh::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkPolyData* input = vtkPolyData::GetData(inputVector[0], 0);
+  vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
+  output->Initialize();
+  const auto start = std::chrono::steady_clock::now();
+  auto mesh = bsr::triangleMeshFrom(input, this->RegionArray);
+  if (!mesh)
+  {
+    vtkErrorMacro(<< mesh.status().message());
+    return 0;
+  }
+  const bool regions = !mesh->Region.empty();
+  bsr::QuadRemeshOptions options;
+  options.NumberOfQuads = this->NumberOfQuads;
+  options.FeatureAngle = this->FeatureAngle;
+  options.Seed = this->Seed;
+  bsr::AlgorithmMonitor monitor(this);
+  auto layout = bsr::quadRemesh(*mesh, options, monitor);
+  if (!layout)
+  {
+    if (layout.status().code() != bsr::StatusCode::Cancelled)
+    {
+      vtkErrorMacro(<< layout.status().message());
+    }
+    return 0;
+  }
+  bsr::quadMeshTo(layout->Mesh, output);
+  addArray<vtkDoubleArray>(output->GetCellData(), "ScaledJacobian", layout->Report.Jacobian);
+  addArray<vtkIntArray>(output->GetPointData(), "Valence", layout->Report.Valence);
+  if (regions)
+  {
+    addArray<vtkIntArray>(output->GetCellData(), this->RegionArray.c_str(), layout->Mesh.Region);
+  }
+  report(*layout, output->GetFieldData());
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  bsr::addField(output->GetFieldData(), "Seconds", seconds.count());
+  return 1;
+}
+
+void vtkQuadRemesh::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Method: " << this->Method << "\n";
+  os << indent << "NumberOfQuads: " << this->NumberOfQuads << "\n";
+  os << indent << "FeatureAngle: " << this->FeatureAngle << "\n";
+  os << indent << "Seed: " << this->Seed << "\n";
+  os << indent << "RegionArray: " << this->RegionArray << "\n";
+}

@@ -1,0 +1,106 @@
+/**
+ * @class vtkQuadRemesh
+ * @brief coarse pure-quad layout of a dense triangle surface
+ *
+ * vtkQuadRemesh lays some hundred quads over a closed or open triangle surface of any genus: the
+ * patches of a spline model. The surface is decimated (quadric edge collapse that keeps
+ * topology), a cross field that follows curvature and region borders is integrated to an
+ * integer grid, and the grid's cells become the quads; where that gives no valid layout, pairs of
+ * coarse triangles are split into quads instead. The layout is always an oriented 2-manifold
+ * of the input's Euler characteristic and boundary loops, without doublets (vertices of two quads),
+ * or there is one error.
+ *
+ * Unlike the decimation filters of VTK, which give triangles, the output is made of quads only.
+ *
+ * Region borders of the cell array RegionArray become closed rows of quad edges that follow the
+ * border; so do boundaries and edges sharper than FeatureAngle.
+ *
+ * Output: quads (vtkPolyData) and
+ * - cell array `ScaledJacobian` (Float64): worst corner of each quad, 1 for a rectangle;
+ * - cell array RegionArray (Int32), where the input has it;
+ * - point array `Valence` (Int32): edges at each vertex;
+ * - field arrays `Irregular` (interior vertices of a valence other than 4), `EulerCharacteristic`,
+ *   `Hausdorff` (largest distance between surface and layout, both ways, in world units),
+ *   `MeanDistance`, `MinScaledJacobian`, `MeanAngleDeviation` (degrees), `LayoutStage` (per
+ *   component: 0 parametrized, 1 paired triangles), `Repairs` (merged points, degenerate,
+ *   repeated and turned faces, split vertices), `Seconds`.
+ *
+ * Reference: H. Mosbach et al., paper 000, section 2; D. Bommes, H. Zimmer and L. Kobbelt,
+ * Mixed-integer quadrangulation, ACM Trans. Graph. 28 (2009); J. Huang et al., QuadriFlow, Comput.
+ * Graph. Forum 37 (2018).
+ *
+ * @warning Edges of three or more triangles and one-sided surfaces are errors.
+ * @sa vtkPartitionToQuads vtkBSplineG1Fit
+ */
+
+#ifndef vtkQuadRemesh_h
+#define vtkQuadRemesh_h
+
+#include "BSplineReconstructionFiltersModule.h"
+
+#include <vtkPolyDataAlgorithm.h>
+
+#include <string>
+
+class BSPLINERECONSTRUCTIONFILTERS_EXPORT vtkQuadRemesh : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkQuadRemesh* New();
+  vtkTypeMacro(vtkQuadRemesh, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum Methods
+  {
+    FIELD_ALIGNED = 0
+  };
+
+  ///@{
+  /// How the layout is found. Default: FIELD_ALIGNED, the only one so far.
+  vtkSetClampMacro(Method, int, FIELD_ALIGNED, FIELD_ALIGNED);
+  vtkGetMacro(Method, int);
+  ///@}
+
+  ///@{
+  /// Number of quads asked for, all components together; met within about 10 % where the
+  /// topology allows. Default 500, from 6 to 200000.
+  vtkSetMacro(NumberOfQuads, int);
+  vtkGetMacro(NumberOfQuads, int);
+  ///@}
+
+  ///@{
+  /// Edges where the normals turn by more than this many degrees become quad edges. Default 180:
+  /// none.
+  vtkSetMacro(FeatureAngle, double);
+  vtkGetMacro(FeatureAngle, double);
+  ///@}
+
+  ///@{
+  /// Varies what is arbitrary; the same seed gives the same layout. Default 0.
+  vtkSetMacro(Seed, int);
+  vtkGetMacro(Seed, int);
+  ///@}
+
+  ///@{
+  /// Cell array of regions whose borders become rows of quad edges, used if the input has it.
+  /// Default "EndRegion".
+  vtkSetMacro(RegionArray, std::string);
+  vtkGetMacro(RegionArray, std::string);
+  ///@}
+
+protected:
+  vtkQuadRemesh() = default;
+  ~vtkQuadRemesh() override = default;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  vtkQuadRemesh(const vtkQuadRemesh&) = delete;
+  void operator=(const vtkQuadRemesh&) = delete;
+
+  int Method = FIELD_ALIGNED;
+  int NumberOfQuads = 500;
+  double FeatureAngle = 180.0;
+  int Seed = 0;
+  std::string RegionArray = "EndRegion";
+};
+
+#endif

@@ -1,0 +1,211 @@
+#include "Layout/QuadRemesh.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace
+{
+using namespace bsr;
+
+/// A torus (open: a tube with two boundary loops) of 2 n m triangles.
+TriangleMesh ring(int n, int m, bool closed)
+{
+  TriangleMesh mesh;
+  const int rows = closed ? n : n + 1;
+  for (int i = 0; i < rows; ++i)
+  {
+    for (int j = 0; j < m; ++j)
+    {
+      const double u = 2.0 * M_PI * i / n;
+      const double v = 2.0 * M_PI * j / m;
+      const double r = closed ? 3.0 + std::cos(v) : std::cos(v);
+      mesh.Points.emplace_back(closed ? Vec3(r * std::cos(u), r * std::sin(u), std::sin(v))
+                                      : Vec3(r, std::sin(v), 6.0 * i / n));
+    }
+  }
+  for (int i = 0; i < n; ++i)
+  {
+    for (int j = 0; j < m; ++j)
+    {
+      const Index a = i * m + j;
+      const Index b = i * m + (j + 1) % m;
+      const Index c = (i + 1) % rows * m + j;
+      const Index d = (i + 1) % rows * m + (j + 1) % m;
+      mesh.Triangles.push_back({a, c, d});
+      mesh.Triangles.push_back({a, d, b});
+    }
+  }
+  return mesh;
+}
+
+/// The tube closed by two flat caps, regions 1 and 2.
+TriangleMesh cappedTube(int n, int m, bool regions)
+{
+  TriangleMesh mesh = ring(n, m, false);
+  mesh.Region.assign(mesh.Triangles.size(), 0);
+  for (int end = 0; end < 2; ++end)
+  {
+    const auto middle = static_cast<Index>(mesh.Points.size());
+    mesh.Points.emplace_back(0.0, 0.0, 6.0 * end);
+    for (int j = 0; j < m; ++j)
+    {
+      const Index a = end * n * m + j;
+      const Index b = end * n * m + (j + 1) % m;
+      mesh.Triangles.push_back(
+        end == 0 ? std::array<Index, 3>{middle, a, b} : std::array<Index, 3>{middle, b, a});
+      mesh.Region.push_back(end + 1);
+    }
+  }
+  if (!regions)
+  {
+    mesh.Region.clear();
+  }
+  return mesh;
+}
+
+QuadLayout remeshed(const TriangleMesh& mesh, int quads)
+{
+  QuadRemeshOptions options;
+  options.NumberOfQuads = quads;
+  Monitor monitor;
+  auto layout = quadRemesh(mesh, options, monitor);
+  EXPECT_TRUE(layout) << layout.status().message();
+  return layout ? *layout : QuadLayout{};
+}
+
+Status failure(const TriangleMesh& mesh, const QuadRemeshOptions& options = {})
+{
+  Monitor monitor;
+  return quadRemesh(mesh, options, monitor).status();
+}
+
+void expectSound(const QuadLayout& layout, int euler, int loops)
+{
+  EXPECT_TRUE(layout.Report.Valid) << layout.Report.Problem;
+  EXPECT_EQ(layout.Report.Euler, euler);
+  EXPECT_EQ(layout.Report.BoundaryLoops, loops);
+  EXPECT_EQ(layout.Report.Flipped, 0);
+  EXPECT_LE(layout.Report.MaxValence, 8);
+}
+} // namespace
+
+TEST(QuadRemesh, TorusKeepsItsTopologyAndCount)
+{
+  for (int quads : {100, 250, 500, 1000})
+  {
+    const QuadLayout layout = remeshed(ring(160, 60, true), quads);
+    expectSound(layout, 0, 0);
+    EXPECT_NEAR(layout.Mesh.Quads.size(), quads, 0.12 * quads);
+    EXPECT_LT(layout.Distance.Maximum, 0.6);
+  }
+}
+
+TEST(QuadRemesh, OpenTubeKeepsItsBoundaries)
+{
+  expectSound(remeshed(ring(80, 60, false), 200), 0, 2);
+}
+
+TEST(QuadRemesh, RegionBordersBecomeClosedRowsOfEdges)
+{
+  const QuadLayout layout = remeshed(cappedTube(80, 60, true), 300);
+  expectSound(layout, 2, 0);
+  for (Index region : {1, 2})
+  {
+    QuadMesh cap;
+    std::vector<Index> map(layout.Mesh.Points.size(), -1);
+    QuadMesh body = cap;
+    for (std::size_t q = 0; q < layout.Mesh.Quads.size(); ++q)
+    {
+      if (layout.Mesh.Region[q] == region)
+      {
+        auto quad = layout.Mesh.Quads[q];
+        for (Index& v : quad)
+        {
+          if (map[v] < 0)
+          {
+            map[v] = static_cast<Index>(cap.Points.size());
+            cap.Points.push_back(layout.Mesh.Points[v]);
+          }
+          v = map[v];
+        }
+        cap.Quads.push_back(quad);
+      }
+    }
+    const LayoutReport report = checkLayout(cap);
+    EXPECT_TRUE(report.Valid) << report.Problem;
+    EXPECT_EQ(report.Euler, 1);
+    EXPECT_EQ(report.BoundaryLoops, 1);
+    for (const Vec3& p : cap.Points)
+    {
+      EXPECT_NEAR(p.z(), region == 1 ? 0.0 : 6.0, 1e-9);
+    }
+  }
+}
+
+TEST(QuadRemesh, SeveralComponentsAllGetQuads)
+{
+  TriangleMesh mesh = ring(100, 40, true);
+  const auto base = static_cast<Index>(mesh.Points.size());
+  const TriangleMesh other = cappedTube(40, 30, false);
+  for (const Vec3& p : other.Points)
+  {
+    mesh.Points.emplace_back(0.3 * p + Vec3(20, 0, 0));
+  }
+  for (const auto& t : other.Triangles)
+  {
+    mesh.Triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+  }
+  const QuadLayout layout = remeshed(mesh, 400);
+  expectSound(layout, 2, 0);
+  EXPECT_EQ(layout.Report.Components, 2);
+}
+
+TEST(QuadRemesh, MendsOrientationAndDuplicates)
+{
+  TriangleMesh mesh = ring(60, 30, true);
+  std::swap(mesh.Triangles[7][0], mesh.Triangles[7][1]);
+  mesh.Triangles.push_back(mesh.Triangles[3]);
+  mesh.Triangles.push_back({5, 5, 6});
+  const QuadLayout layout = remeshed(mesh, 200);
+  expectSound(layout, 0, 0);
+  EXPECT_EQ(layout.Repairs.TurnedFaces, 1);
+  EXPECT_EQ(layout.Repairs.DuplicateFaces, 1);
+  EXPECT_EQ(layout.Repairs.DegenerateFaces, 1);
+}
+
+TEST(QuadRemesh, IsDeterministic)
+{
+  const QuadLayout a = remeshed(ring(100, 40, true), 300);
+  const QuadLayout b = remeshed(ring(100, 40, true), 300);
+  ASSERT_EQ(a.Mesh.Quads, b.Mesh.Quads);
+  EXPECT_EQ(a.Mesh.Points, b.Mesh.Points);
+}
+
+TEST(QuadRemesh, BadInputIsOneClearError)
+{
+  EXPECT_EQ(failure({}).code(), StatusCode::InvalidInput);
+  TriangleMesh nan = ring(10, 10, true);
+  nan.Points[3].x() = std::nan("");
+  EXPECT_EQ(failure(nan).code(), StatusCode::InvalidInput);
+  TriangleMesh fin = ring(10, 10, true);
+  fin.Points.emplace_back(9, 9, 9);
+  fin.Triangles.push_back({0, 1, static_cast<Index>(fin.Points.size()) - 1});
+  EXPECT_EQ(failure(fin).code(), StatusCode::InvalidInput);
+  TriangleMesh far = ring(10, 10, true);
+  far.Triangles[0][0] = 1000000;
+  EXPECT_EQ(failure(far).code(), StatusCode::InvalidInput);
+  QuadRemeshOptions options;
+  options.NumberOfQuads = 0;
+  EXPECT_EQ(failure(ring(10, 10, true), options).code(), StatusCode::InvalidParameter);
+}
+
+TEST(QuadRemesh, CancelsWithoutOutput)
+{
+  struct Stop : Monitor
+  {
+    bool cancelled() override { return true; }
+  } stop;
+  auto layout = quadRemesh(ring(100, 40, true), {}, stop);
+  EXPECT_EQ(layout.status().code(), StatusCode::Cancelled);
+}
