@@ -157,12 +157,12 @@ def check_picture(view, name, threshold=1.0):
     With BSR_UPDATE_BASELINES set the baseline is written instead; look at it before adding it.
     """
     baseline = os.path.join(SOURCE_DIR, "Testing", "Baseline", name + ".png")
+    view.StillRender()  # Render() of paraview.simple would reset the camera the first time
     if os.environ.get("BSR_UPDATE_BASELINES"):
         SaveScreenshot(baseline, view, ImageResolution=view.ViewSize)
         print("wrote " + baseline)
         return
     assert os.path.exists(baseline), "no " + baseline
-    Render(view)
     testing = vtkSMTesting()
     for argument in ("-T", TEMP_DIR, "-V", baseline):
         testing.AddArgument(argument)
