@@ -125,6 +125,7 @@ void FiberShape::design(const FiberPhantomOptions& o)
   const SmoothWave collapse(random, 4.0 * r);
   const SmoothWave wall(random, 3.0 * r);
   std::vector<SmoothWave> waves;
+  waves.reserve(16);
   for (int i = 0; i < 16; ++i)
   {
     waves.emplace_back(random, 3.5 * r);
@@ -173,7 +174,9 @@ void FiberShape::fitCenterline(const FiberPhantomOptions& o)
   const SmoothWave z(random, 9.0 * this->Radius);
   for (std::size_t e = 0; e < 12; ++e)
   {
-    this->Cut[e / 6][e % 6] = random.uniform(-0.10, 0.10) * this->Radius / (1.0 + (e % 6) / 2);
+    const std::size_t times = (e % 6) / 2 + 1; // the angle
+    this->Cut[e / 6][e % 6] =
+      random.uniform(-0.10, 0.10) * this->Radius / static_cast<double>(times);
   }
   // Room left for bending in each direction; at least a little, so that the ends may come close.
   double widest = 0.0;

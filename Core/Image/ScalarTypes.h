@@ -4,5 +4,6 @@
 /// for these).
 #define BSR_FOR_EACH_SCALAR_TYPE(M)                                                                \
   M(float)                                                                                         \
-  M(double) M(char) M(signed char) M(unsigned char) M(short) M(unsigned short) M(int)              \
-    M(unsigned int) M(long) M(unsigned long) M(long long) M(unsigned long long)
+  M(double)                                                                                        \
+  M(char) M(signed char) M(unsigned char) M(short) M(unsigned short) M(int) M(unsigned int)        \
+    M(long) M(unsigned long) M(long long) M(unsigned long long)

@@ -1,0 +1,33 @@
+# cmake -DCHECK=Format|CoreWithoutVTK -DGIT=... -DCLANG_FORMAT=... -P CheckStyle.cmake
+# run from the source root. Format: every tracked C++ file is as clang-format leaves it.
+# CoreWithoutVTK: no file of Core includes a VTK header.
+if (CHECK STREQUAL "CoreWithoutVTK")
+  file(GLOB_RECURSE files "Core/*.h" "Core/*.cxx" "Core/CMakeLists.txt")
+  set(bad "")
+  foreach (file IN LISTS files)
+    file(STRINGS "${file}" hits REGEX "#[ \t]*include[ \t]*[<\"]vtk|VTK::")
+    foreach (hit IN LISTS hits)
+      string(APPEND bad "\n  ${file}: ${hit}")
+    endforeach ()
+  endforeach ()
+  if (bad)
+    message(FATAL_ERROR "Core must not use VTK:${bad}")
+  endif ()
+  return ()
+endif ()
+
+if (NOT GIT OR NOT CLANG_FORMAT)
+  message("SKIPPED: git or clang-format not found")
+  return ()
+endif ()
+execute_process(COMMAND "${GIT}" ls-files "*.h" "*.cxx"
+  RESULT_VARIABLE failed OUTPUT_VARIABLE files ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
+if (failed OR files STREQUAL "")
+  message("SKIPPED: not a git working copy")
+  return ()
+endif ()
+string(REPLACE "\n" ";" files "${files}")
+execute_process(COMMAND "${CLANG_FORMAT}" --dry-run -Werror ${files} RESULT_VARIABLE failed)
+if (failed)
+  message(FATAL_ERROR "Apply clang-format -i to the files above.")
+endif ()
