@@ -165,10 +165,10 @@ public:
     SubMonitor columns(monitor, 0.1, 0.55);
     SubMonitor depths(monitor, 0.55, 1.0);
     return this->alongX(buffer, rows) &&
-           linePass(buffer, 1, this->Sites.Size[2], this->Sites.Size[1], this->Lines[1].Count,
-             columns, [this]() { return this->envelope(1); }) &&
-           linePass(buffer, 2, this->Lines[1].Count, this->Sites.Size[2], this->Lines[2].Count,
-             depths, [this]() { return this->envelope(2); });
+           linePass(buffer, buffer, 1, this->Sites.Size[2], this->Sites.Size[1],
+             this->Lines[1].Count, columns, [this]() { return this->envelope(1); }) &&
+           linePass(buffer, buffer, 2, this->Lines[1].Count, this->Sites.Size[2],
+             this->Lines[2].Count, depths, [this]() { return this->envelope(2); });
   }
 
 private:
