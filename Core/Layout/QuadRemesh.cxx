@@ -1,6 +1,7 @@
 #include "Layout/QuadRemesh.h"
 
 #include "Layout/PairTriangles.h"
+#include "Layout/ParametrizedLayout.h"
 #include "Layout/RelaxLayout.h"
 #include "Mesh/Decimate.h"
 
@@ -112,7 +113,13 @@ Result<QuadLayout> quadRemesh(
     }
     const ReferenceSurface reference(s);
     SubMonitor laying(part, 0.5, 0.95);
-    auto draft = pairedLayout(s, reference, quads, laying);
+    LayoutStage stage = LayoutStage::Parametrized;
+    auto draft = parametrizedLayout(s, reference, quads, options.Seed, laying);
+    if (draft && draft->Mesh.Quads.empty())
+    {
+      stage = LayoutStage::Paired;
+      draft = pairedLayout(s, reference, quads, laying);
+    }
     if (!draft)
     {
       return draft.status();
@@ -127,7 +134,7 @@ Result<QuadLayout> quadRemesh(
     const LayoutDistance d = layoutDistance(draft->Mesh, s, reference);
     layout.Distance.Maximum = std::max(layout.Distance.Maximum, d.Maximum);
     layout.Distance.Mean += share * d.Mean;
-    layout.Stages.push_back(LayoutStage::Paired);
+    layout.Stages.push_back(stage);
     append(layout.Mesh, draft->Mesh);
   }
   layout.Report = checkLayout(layout.Mesh);

@@ -1,0 +1,370 @@
+#include "Layout/GridMap.h"
+
+#include "Layout/GridTopology.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/SparseCholesky>
+
+#include <cmath>
+
+namespace bsr
+{
+namespace
+{
+using Sparse = Eigen::SparseMatrix<double>;
+constexpr Index MostIntegers = 1200;
+
+/// A corner coordinate as a combination of unknowns.
+using Combination = std::vector<std::pair<Index, double>>;
+
+class GridSolver
+{
+public:
+  GridSolver(const TriangleSurface& s, const GridTopology& topology, double cell)
+      : S(s), Topology(topology), Cell(cell), Stiffness(s.Region.size(), 1.0)
+  {
+    this->number();
+  }
+
+  bool run(std::vector<Vec2>& uv, std::vector<std::int64_t>& integers, int& folded)
+  {
+    const Index ny = this->Topology.Kernel.freeVariables();
+    if (ny > MostIntegers)
+    {
+      return false;
+    }
+    if (!this->assemble() || !this->reduce())
+    {
+      return false;
+    }
+    this->round();
+    for (int pass = 0; pass < 6; ++pass)
+    {
+      const Eigen::VectorXd x = this->Solver.solve(this->Br - this->Hry * this->Y);
+      if (this->Solver.info() != Eigen::Success || !x.allFinite())
+      {
+        return false;
+      }
+      this->evaluate(x, uv);
+      folded = this->stiffen(uv);
+      if (folded == 0 || pass == 5 || !this->assemble())
+      {
+        break;
+      }
+    }
+    integers.resize(static_cast<std::size_t>(ny));
+    for (Index i = 0; i < ny; ++i)
+    {
+      integers[i] = std::llround(this->Y[i]);
+    }
+    return true;
+  }
+
+private:
+  /// Numbers the real unknowns: coordinates of vertices that are not whole.
+  void number()
+  {
+    this->Real.assign(2 * this->S.Points.size(), -1);
+    for (Index v = 0; v < this->S.vertices(); ++v)
+    {
+      for (int c = 0; c < 2 && this->Topology.Used[v]; ++c)
+      {
+        if (this->Topology.Whole[2 * v + c] < 0)
+        {
+          this->Real[2 * v + c] = this->Reals++;
+        }
+      }
+    }
+  }
+
+  Combination combination(Index h, int c) const
+  {
+    const CornerForm& corner = this->Topology.Corners[h];
+    int from = 0;
+    const int sign = corner.source(c, from);
+    const Index v = this->S.start(h);
+    IntegerForm whole;
+    Combination out;
+    const Index id = this->Topology.Whole[2 * v + from];
+    if (id < 0)
+    {
+      out.emplace_back(this->Real[2 * v + from], sign);
+    }
+    else
+    {
+      addForm(whole, this->Topology.Kernel.variable(id), sign);
+    }
+    for (const auto& [variable, factor] : corner.Form[c])
+    {
+      addForm(whole, this->Topology.Kernel.variable(variable), factor);
+    }
+    for (const auto& [variable, factor] : whole)
+    {
+      out.emplace_back(this->Reals + variable, static_cast<double>(factor));
+    }
+    return out;
+  }
+
+  void cacheCombinations()
+  {
+    this->Corner.resize(2 * this->S.Vertex.size());
+    for (Index h = 0; h < static_cast<Index>(this->S.Vertex.size()); ++h)
+    {
+      for (int c = 0; c < 2 && this->Topology.Field.Inside[h / 3]; ++c)
+      {
+        this->Corner[2 * h + c] = this->combination(h, c);
+      }
+    }
+  }
+
+  /// Gradients of the three hat functions of a triangle, in its own frame; twice the area.
+  double gradients(Index f, std::array<Vec2, 3>& g) const
+  {
+    const auto c = this->S.corners(f);
+    const Vec3 e0 = this->S.Points[c[1]] - this->S.Points[c[0]];
+    const Vec3 e1 = this->S.Points[c[2]] - this->S.Points[c[0]];
+    const Vec3 x = e0.normalized();
+    const Vec3 y = e0.cross(e1).normalized().cross(x);
+    const std::array<Vec2, 3> p = {Vec2(0, 0), Vec2(e0.norm(), 0), Vec2(e1.dot(x), e1.dot(y))};
+    const double twice = std::max(p[1][0] * p[2][1], 1e-300);
+    for (int k = 0; k < 3; ++k)
+    {
+      const Vec2 e = p[(k + 2) % 3] - p[(k + 1) % 3];
+      g[k] = Vec2(-e[1], e[0]) / twice;
+    }
+    return twice;
+  }
+
+  bool assemble()
+  {
+    if (this->Corner.empty())
+    {
+      this->cacheCombinations();
+    }
+    const Index ny = this->Topology.Kernel.freeVariables();
+    std::vector<Eigen::Triplet<double>> rr;
+    std::vector<Eigen::Triplet<double>> ry;
+    this->Hyy = Eigen::MatrixXd::Zero(ny, ny);
+    this->Br = Eigen::VectorXd::Zero(this->Reals);
+    this->By = Eigen::VectorXd::Zero(ny);
+    for (Index f = 0; f < this->S.faces(); ++f)
+    {
+      if (this->Topology.Field.Inside[f])
+      {
+        this->addFace(f, rr, ry);
+      }
+    }
+    for (Index i = 0; i < this->Reals; ++i)
+    {
+      rr.emplace_back(i, i, 1e-9);
+    }
+    this->Hrr.resize(this->Reals, this->Reals);
+    this->Hrr.setFromTriplets(rr.begin(), rr.end());
+    this->Hry.resize(this->Reals, ny);
+    this->Hry.setFromTriplets(ry.begin(), ry.end());
+    this->Solver.compute(this->Hrr);
+    return this->Solver.info() == Eigen::Success;
+  }
+
+  template <class List>
+  void addFace(Index f, List& rr, List& ry)
+  {
+    std::array<Vec2, 3> g;
+    const double area = 0.5 * this->gradients(f, g) / (this->Cell * this->Cell);
+    const double angle = this->Topology.Field.Angle[f];
+    const std::array<Vec2, 2> wish = {Vec2(std::cos(angle), std::sin(angle)) / this->Cell,
+      Vec2(-std::sin(angle), std::cos(angle)) / this->Cell};
+    // Lengths in cells: the energy has no unit.
+    const double weight = this->Stiffness[f] * area * this->Cell * this->Cell;
+    for (int c = 0; c < 2; ++c)
+    {
+      for (int i = 0; i < 3; ++i)
+      {
+        for (const auto& [a, fa] : this->Corner[2 * (3 * f + i) + c])
+        {
+          const double b = weight * g[i].dot(wish[c]) * fa;
+          (a < this->Reals ? this->Br[a] : this->By[a - this->Reals]) += b;
+          for (int j = 0; j < 3; ++j)
+          {
+            const double w = weight * g[i].dot(g[j]) * fa;
+            for (const auto& [d, fd] : this->Corner[2 * (3 * f + j) + c])
+            {
+              if (a < this->Reals && d < this->Reals)
+              {
+                rr.emplace_back(a, d, w * fd);
+              }
+              else if (a < this->Reals)
+              {
+                ry.emplace_back(a, d - this->Reals, w * fd);
+              }
+              else if (d >= this->Reals)
+              {
+                this->Hyy(a - this->Reals, d - this->Reals) += w * fd;
+              }
+            }
+          }
+        }
+      }
+    }
+  }
+
+  /// The energy as a function of the whole unknowns alone.
+  bool reduce()
+  {
+    const Eigen::MatrixXd dense = Eigen::MatrixXd(this->Hry);
+    const Eigen::MatrixXd solved = this->Solver.solve(dense);
+    this->Schur = this->Hyy - this->Hry.transpose() * solved;
+    this->Pull = this->By - solved.transpose() * this->Br;
+    return this->Schur.allFinite() && this->Pull.allFinite();
+  }
+
+  /// Fixes the whole unknowns: always the one whose rounding costs least, then single steps.
+  void round()
+  {
+    const Eigen::Index n = this->Schur.rows();
+    Eigen::MatrixXd regular = this->Schur;
+    const double ridge = 1e-9 * std::max(1.0, this->Schur.trace() / std::max<double>(n, 1.0));
+    regular.diagonal().array() += ridge;
+    Eigen::MatrixXd inverse = regular.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+    this->Y = inverse * this->Pull;
+    std::vector<std::uint8_t> fixed(n, 0);
+    for (Eigen::Index step = 0; step < n; ++step)
+    {
+      Eigen::Index best = -1;
+      double least = 0.0;
+      for (Eigen::Index i = 0; i < n; ++i)
+      {
+        const double off = std::round(this->Y[i]) - this->Y[i];
+        const double cost = off * off / std::max(inverse(i, i), 1e-300);
+        if (!fixed[i] && (best < 0 || cost < least))
+        {
+          best = i;
+          least = cost;
+        }
+      }
+      const double value = std::round(this->Y[best]);
+      const double pivot = std::max(inverse(best, best), 1e-300);
+      const Eigen::VectorXd column = inverse.col(best);
+      this->Y += column * ((value - this->Y[best]) / pivot);
+      inverse -= column * column.transpose() / pivot;
+      this->Y[best] = value;
+      fixed[best] = 1;
+    }
+    this->Y = this->Y.array().round();
+    this->improve();
+  }
+
+  void improve()
+  {
+    Eigen::VectorXd slope = this->Schur * this->Y - this->Pull;
+    for (int pass = 0; pass < 50; ++pass)
+    {
+      bool moved = false;
+      for (Eigen::Index i = 0; i < slope.size(); ++i)
+      {
+        const double step = slope[i] > 0.0 ? -1.0 : 1.0;
+        if (step * slope[i] + 0.5 * this->Schur(i, i) < -1e-9)
+        {
+          this->Y[i] += step;
+          slope += step * this->Schur.col(i);
+          moved = true;
+        }
+      }
+      if (!moved)
+      {
+        break;
+      }
+    }
+  }
+
+  void evaluate(const Eigen::VectorXd& x, std::vector<Vec2>& uv) const
+  {
+    uv.assign(this->S.Vertex.size(), Vec2::Zero());
+    for (std::size_t i = 0; i < this->Corner.size(); ++i)
+    {
+      for (const auto& [unknown, factor] : this->Corner[i])
+      {
+        uv[i / 2][static_cast<Eigen::Index>(i % 2)] +=
+          factor * (unknown < this->Reals ? x[unknown] : this->Y[unknown - this->Reals]);
+      }
+    }
+  }
+
+  /// Stiffens triangles that fold or nearly so, and their neighbors; returns how many fold.
+  int stiffen(const std::vector<Vec2>& uv)
+  {
+    int folded = 0;
+    std::vector<double> more(this->Stiffness.size(), 1.0);
+    for (Index f = 0; f < this->S.faces(); ++f)
+    {
+      if (!this->Topology.Field.Inside[f])
+      {
+        continue;
+      }
+      const Vec2 a = uv[3 * f + 1] - uv[3 * f];
+      const Vec2 b = uv[3 * f + 2] - uv[3 * f];
+      const double area = a[0] * b[1] - a[1] * b[0];
+      const double wished = 2.0 * this->S.areaNormal(f).norm() / (this->Cell * this->Cell);
+      folded += area <= 0.0;
+      if (area < 0.1 * wished)
+      {
+        more[f] = 3.0;
+        for (Index h = 3 * f; h < 3 * f + 3; ++h)
+        {
+          more[this->S.Opposite[h] / 3] = std::max(more[this->S.Opposite[h] / 3], 1.8);
+        }
+      }
+    }
+    for (std::size_t f = 0; f < more.size(); ++f)
+    {
+      this->Stiffness[f] *= more[f];
+    }
+    return folded;
+  }
+
+  const TriangleSurface& S;
+  const GridTopology& Topology;
+  double Cell;
+  std::vector<double> Stiffness;
+  std::vector<Index> Real;
+  Index Reals = 0;
+  std::vector<Combination> Corner;
+  Sparse Hrr;
+  Sparse Hry;
+  Eigen::MatrixXd Hyy;
+  Eigen::MatrixXd Schur;
+  Eigen::VectorXd Br;
+  Eigen::VectorXd By;
+  Eigen::VectorXd Pull;
+  Eigen::VectorXd Y;
+  Eigen::SimplicialLDLT<Sparse> Solver;
+};
+} // namespace
+
+GridMap gridMap(const TriangleSurface& s, const CrossField& field, double cell)
+{
+  GridMap map;
+  if (field.Angle.empty())
+  {
+    return map;
+  }
+  const GridTopology topology = gridTopology(s, field);
+  if (!topology.Usable)
+  {
+    return map;
+  }
+  std::vector<std::int64_t> integers;
+  std::vector<Vec2> uv;
+  if (!GridSolver(s, topology, cell).run(uv, integers, map.Folded))
+  {
+    return map;
+  }
+  map.Surface = s;
+  map.Inside = field.Inside;
+  map.UV = std::move(uv);
+  map.Singular = topology.Singular;
+  topology.transitions(s, integers, map.Turn, map.Shift);
+  return map;
+}
+} // namespace bsr

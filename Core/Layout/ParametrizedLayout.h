@@ -1,0 +1,20 @@
+#pragma once
+
+#include "Common/Monitor.h"
+#include "Common/Status.h"
+#include "Layout/LayoutDraft.h"
+
+namespace bsr
+{
+/**
+ * A layout of one component by an integer-grid map of a cross field. Regions other than 0 must be
+ * discs: the map covers region 0 and ends along their borders, which are then capped. Several
+ * fields are tried; the best valid layout is relaxed and returned. No quads: none was found, and
+ * another road must be taken (that is not an error).
+ */
+Result<LayoutDraft> parametrizedLayout(const TriangleSurface& s, const ReferenceSurface& reference,
+  int quads, int seed, Monitor& monitor);
+
+/// Small is good: angles, count, irregular vertices, bad quads, distance.
+double layoutCost(const LayoutReport& report, int wanted, int got);
+} // namespace bsr
