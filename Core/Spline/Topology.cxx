@@ -112,10 +112,10 @@ std::int64_t sideLength(const GridSize& g, int side)
 }
 
 void joinSide(const SplineModel& model, const std::vector<GridSize>& sizes,
-  const std::vector<std::int64_t>& first, std::int64_t p, int s, UnionFind& sets)
+  const std::vector<std::int64_t>& first, std::int64_t p, int s, bool joinPoles, UnionFind& sets)
 {
   const std::int64_t n = sideLength(sizes[p], s);
-  if (sideCollapsed(model, p, s))
+  if (joinPoles && sideCollapsed(model, p, s))
   {
     for (std::int64_t k = 1; k < n; ++k)
     {
@@ -181,7 +181,8 @@ SideMatch matchSide(const SplineModel& model, std::int64_t patch, int side)
   return m;
 }
 
-StitchedGrids stitchGrids(const SplineModel& model, const std::vector<GridSize>& sizes)
+StitchedGrids stitchGrids(
+  const SplineModel& model, const std::vector<GridSize>& sizes, bool joinPoles)
 {
   StitchedGrids g;
   std::int64_t total = 0;
@@ -195,7 +196,7 @@ StitchedGrids stitchGrids(const SplineModel& model, const std::vector<GridSize>&
   {
     for (int s = 0; s < 4; ++s)
     {
-      joinSide(model, sizes, g.First, p, s, sets);
+      joinSide(model, sizes, g.First, p, s, joinPoles, sets);
     }
   }
   g.Id.resize(static_cast<std::size_t>(total));

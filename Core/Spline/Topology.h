@@ -46,11 +46,13 @@ struct StitchedGrids
 };
 
 /**
- * Numbers the points of grids over the patches so that matching sides (and collapsed sides, whose
- * points coincide) share them. Sides with different numbers of points are not joined. With
- * `sizes` chosen per strip of patches, a closed model gives a closed mesh.
+ * Numbers the points of grids over the patches so that matching sides share them, and, with
+ * `joinPoles`, the points of a collapsed side are one (their weights may differ). Sides with
+ * different numbers of points are not joined. With `sizes` chosen per strip of patches, a closed
+ * model gives a closed mesh.
  */
-StitchedGrids stitchGrids(const SplineModel& model, const std::vector<GridSize>& sizes);
+StitchedGrids stitchGrids(
+  const SplineModel& model, const std::vector<GridSize>& sizes, bool joinPoles = true);
 
 /// True for a side whose control points all coincide (a pole).
 bool sideCollapsed(const SplineModel& model, std::int64_t patch, int side);
