@@ -1,0 +1,73 @@
+#include "Spline/ThinPlate.h"
+
+#include "Spline/Basis.h"
+
+#include <cmath>
+
+namespace bsr
+{
+namespace
+{
+/// Gram matrices of the values and of the first and second derivatives of the univariate splines.
+struct Gram
+{
+  Eigen::MatrixXd Value;
+  Eigen::MatrixXd First;
+  Eigen::MatrixXd Second;
+};
+
+Gram gramMatrices(int segments)
+{
+  const int n = 2 * segments + 2;
+  const auto knots = segmentKnots(3, segments, 2);
+  // Four Gauss points: exact to degree 7, the products have degree 6.
+  const double x0 = std::sqrt(3.0 / 7.0 - 2.0 / 7.0 * std::sqrt(6.0 / 5.0));
+  const double x1 = std::sqrt(3.0 / 7.0 + 2.0 / 7.0 * std::sqrt(6.0 / 5.0));
+  const double w0 = (18.0 + std::sqrt(30.0)) / 36.0;
+  const double w1 = (18.0 - std::sqrt(30.0)) / 36.0;
+  const double x[4] = {-x1, -x0, x0, x1};
+  const double w[4] = {w1, w0, w0, w1};
+  Gram g{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n)};
+  for (int s = 0; s < segments; ++s)
+  {
+    for (int q = 0; q < 4; ++q)
+    {
+      const BasisValues b = evaluateBasis(knots.data(), 3, n, (s + 0.5 + 0.5 * x[q]) / segments);
+      const double weight = 0.5 * w[q] / segments;
+      for (int i = 0; i < 4; ++i)
+      {
+        for (int j = 0; j < 4; ++j)
+        {
+          g.Value(b.First + i, b.First + j) += weight * b.Value[i] * b.Value[j];
+          g.First(b.First + i, b.First + j) += weight * b.Derivative[i] * b.Derivative[j];
+          g.Second(b.First + i, b.First + j) += weight * b.Derivative2[i] * b.Derivative2[j];
+        }
+      }
+    }
+  }
+  return g;
+}
+
+/// Kronecker product for numbering j * n + i: rows of `v` outer, of `u` inner.
+Eigen::MatrixXd tensor(const Eigen::MatrixXd& u, const Eigen::MatrixXd& v)
+{
+  const Eigen::Index n = u.rows();
+  Eigen::MatrixXd m(n * n, n * n);
+  for (Eigen::Index j = 0; j < n; ++j)
+  {
+    for (Eigen::Index l = 0; l < n; ++l)
+    {
+      m.block(j * n, l * n, n, n) = v(j, l) * u;
+    }
+  }
+  return m;
+}
+} // namespace
+
+PatchEnergies patchEnergies(int segments)
+{
+  const Gram g = gramMatrices(segments);
+  return {tensor(g.Second, g.Value), tensor(g.First, g.First), tensor(g.Value, g.Second),
+    tensor(g.Value, g.Value)};
+}
+} // namespace bsr
