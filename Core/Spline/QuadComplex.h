@@ -3,6 +3,8 @@
 #include "Common/Status.h"
 #include "Mesh/Meshes.h"
 
+#include <Eigen/Geometry>
+
 namespace bsr
 {
 /// The faces around a vertex, counter-clockwise; open at a border vertex.

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "Spline/FitEquations.h"
+
+namespace bsr
+{
+/// One candidate of the scan for K.
+struct BalanceScore
+{
+  double DataWeight = 0.0;
+  double Error = 0.0; ///< root mean square of the left-out points' distances along the normal
+};
+
+/**
+ * Finds K by block-wise cross-validation: the points of whole regions (quarters of patches) are
+ * left out in turn and predicted from the rest, for each K of a logarithmic grid. Regions, because
+ * the roughness of CT surfaces is correlated over several voxels: single left-out points would be
+ * predicted by neighbors with the same error, and the noise be followed.
+ * Returns the scores, increasing in K; `best` is set to the K chosen.
+ */
+Result<std::vector<BalanceScore>> scanDataWeight(const PatchNet& net, FitSolver& solver,
+  const FitEquations& equations, const std::vector<FitPoint>& points, double lambda,
+  Monitor& monitor, double& best);
+} // namespace bsr

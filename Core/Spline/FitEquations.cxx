@@ -1,0 +1,41 @@
+#include "Spline/FitEquations.h"
+
+#include "Common/Parallel.h"
+
+namespace bsr
+{
+PatchBlocks FitEquations::blocks(const PatchNet& net, double lambda, double dataWeight) const
+{
+  const double data =
+    (1.0 - lambda) * dataWeight * net.patches() / std::max(this->TotalWeight, 1e-300);
+  PatchBlocks b;
+  b.resize(net.patches(), net.perPatch());
+  const auto one = [&](Index p)
+  {
+    b.Matrix[p] = data * this->Data.Matrix[p];
+    b.Right[p] = data * this->Data.Right[p];
+    const double fairing = lambda * this->Stiffness[p];
+    const auto [a, c] = this->Aspect[p];
+    b.Matrix[p] += fairing * this->Energies.thinPlate(a, c);
+    if (this->Pull[p] > 0.0)
+    {
+      Eigen::MatrixXd reference(net.perPatch(), 3);
+      for (int l = 0; l < net.perPatch(); ++l)
+      {
+        reference.row(l) = this->Reference.row(net.at(p, l));
+      }
+      b.Matrix[p] += this->Pull[p] * this->Energies.Mass;
+      b.Right[p] += this->Pull[p] * (this->Energies.Mass * reference);
+    }
+  };
+  parallelFor(0, net.patches(), 8,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t p = begin; p < end; ++p)
+      {
+        one(static_cast<Index>(p));
+      }
+    });
+  return b;
+}
+} // namespace bsr

@@ -1,0 +1,92 @@
+#include "Spline/FoldCheck.h"
+
+#include "Common/Parallel.h"
+
+#include <cmath>
+
+namespace bsr
+{
+namespace
+{
+constexpr int Samples = 25;
+
+PatchShape shapeOf(const NetEvaluator& surface, Index patch, const std::vector<BasisValues>& basis)
+{
+  std::vector<Vec3> normal(Samples * Samples);
+  double mean = 0.0;
+  double least = std::numeric_limits<double>::max();
+  for (int j = 0; j < Samples; ++j)
+  {
+    for (int i = 0; i < Samples; ++i)
+    {
+      Vec3& n = normal[j * Samples + i];
+      n = surface.at(patch, basis[i], basis[j]).normal();
+      mean += n.norm() / (Samples * Samples);
+      least = std::min(least, n.norm());
+    }
+  }
+  PatchShape s;
+  s.Folded = !(least >= 1e-5 * mean) || mean == 0.0;
+  for (int j = 0; j < Samples; ++j)
+  {
+    for (int i = 0; i < Samples; ++i)
+    {
+      const Vec3& n = normal[j * Samples + i];
+      s.Folded = s.Folded || (i > 0 && n.dot(normal[j * Samples + i - 1]) <= 0.0) ||
+                 (j > 0 && n.dot(normal[(j - 1) * Samples + i]) <= 0.0);
+    }
+  }
+  s.MinJacobian = mean > 0.0 ? least / mean : 0.0;
+  s.MinJacobian *= s.Folded ? -1.0 : 1.0;
+  return s;
+}
+} // namespace
+
+std::vector<PatchShape> checkShapes(const PatchNet& net, const NetPoints& surface)
+{
+  const NetEvaluator evaluator(net, surface);
+  std::vector<BasisValues> basis;
+  for (int i = 0; i < Samples; ++i)
+  {
+    basis.push_back(evaluator.basis(i / (Samples - 1.0)));
+  }
+  std::vector<PatchShape> shapes(net.patches());
+  parallelFor(0, net.patches(), 8,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t p = begin; p < end; ++p)
+      {
+        shapes[p] = shapeOf(evaluator, static_cast<Index>(p), basis);
+      }
+    });
+  return shapes;
+}
+
+double largestNormalJump(const QuadComplex& complex, const PatchNet& net, const NetPoints& surface)
+{
+  const NetEvaluator evaluator(net, surface);
+  const auto normalAt = [&](Index h, double t)
+  {
+    const double uv[4][2] = {{t, 0.0}, {1.0, t}, {1.0 - t, 1.0}, {0.0, 1.0 - t}};
+    return evaluator.at(h / 4, uv[h % 4][0], uv[h % 4][1]).normal();
+  };
+  return parallelReduce<double>(
+    0, complex.edges(), 64, 0.0,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      double worst = 0.0;
+      for (std::int64_t e = begin; e < end; ++e)
+      {
+        const QuadEdge& edge = complex.edge(static_cast<Index>(e));
+        for (int s = 0; s <= 24 && edge.Second >= 0; ++s)
+        {
+          const Vec3 a = normalAt(edge.First, s / 24.0);
+          const Vec3 b = normalAt(edge.Second, 1.0 - s / 24.0);
+          worst = std::max(worst, std::atan2(a.cross(b).norm(), a.dot(b)));
+        }
+      }
+      return worst * 57.29577951308232;
+    },
+    [](double a, double b) { return std::max(a, b); });
+}
+} // namespace bsr

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "Spline/FitPoints.h"
+
+namespace bsr
+{
+/// What a grid of 25 x 25 normals says about a patch.
+struct PatchShape
+{
+  bool Folded = false; ///< normals of neighboring samples turn by more than 90 degrees, or vanish
+  /// Smallest |Su x Sv| over its mean; negative where the patch is folded.
+  double MinJacobian = 1.0;
+};
+
+std::vector<PatchShape> checkShapes(const PatchNet& net, const NetPoints& surface);
+
+/// Largest angle in degrees between the normals of two patches along their common sides.
+double largestNormalJump(const QuadComplex& complex, const PatchNet& net, const NetPoints& surface);
+} // namespace bsr

@@ -1,0 +1,240 @@
+#include "Spline/G1Fit.h"
+
+#include "Spline/FoldCheck.h"
+#include "Spline/LayoutEnds.h"
+#include "Spline/ModelBuilder.h"
+#include "Spline/PointSelection.h"
+#include "Spline/VertexSpace.h"
+
+#include <cmath>
+
+namespace bsr
+{
+namespace
+{
+Status checkOptions(const G1FitOptions& o)
+{
+  if (o.Segments < 3 || o.Segments > 16)
+  {
+    return Status::invalidParameter(
+      "SegmentsPerSide is " + std::to_string(o.Segments) + "; choose 3 to 16.");
+  }
+  if (o.Fairing.empty())
+  {
+    return Status::invalidParameter("Fairing is empty; give at least one value, e.g. 0.9 0.5 0.1.");
+  }
+  for (const double l : o.Fairing)
+  {
+    if (!(l > 0.0 && l < 1.0))
+    {
+      return Status::invalidParameter(
+        "A Fairing value is " + std::to_string(l) + "; all must lie between 0 and 1, exclusive.");
+    }
+  }
+  if (!(o.DataWeight >= 0.0) || !std::isfinite(o.DataWeight))
+  {
+    return Status::invalidParameter("DataWeight must be 0 (automatic) or a positive number.");
+  }
+  return Status::ok();
+}
+
+std::unique_ptr<FitSolver> makeSolver(
+  const QuadComplex& complex, const PatchNet& net, Continuity continuity, SplineSpace& space)
+{
+  if (continuity == Continuity::C0Multipliers)
+  {
+    return makeMultiplierSolver(net);
+  }
+  if (continuity == Continuity::C0Reduction)
+  {
+    space = makeC0Space(net);
+  }
+  else
+  {
+    space = makeG1Space(complex, net, defaultRule(net.segments()));
+    if (continuity == Continuity::VertexG1)
+    {
+      space = makeVertexSpace(complex, net, space);
+    }
+  }
+  return makeReducedSolver(net, space);
+}
+
+ShellSummary summarize(
+  const PatchNet& net, const ShellFitResult& fit, bool inner, std::vector<PatchReport>& reports)
+{
+  // Distances at the true feet, not at the parameters of the last equations.
+  std::vector<FitPoint> points = fit.Points;
+  correctParameters(net, fit.Net, CorrectionMethod::Newton, points);
+  const auto r = residuals(net, fit.Net, points);
+  const auto shapes = checkShapes(net, fit.Net);
+  const std::size_t first = reports.size();
+  for (const PatchShape& s : shapes)
+  {
+    PatchReport report;
+    report.Side = inner ? Shell::Inner : Shell::Outer;
+    report.MinJacobian = s.MinJacobian;
+    reports.push_back(report);
+  }
+  ShellSummary total;
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    if (points[i].weight() <= 0.0)
+    {
+      ++total.Outliers;
+      continue;
+    }
+    PatchReport& p = reports[first + points[i].Patch];
+    ++p.Points;
+    p.Rms += r[i].Distance * r[i].Distance;
+    p.Max = std::max(p.Max, r[i].Distance);
+  }
+  for (std::size_t i = first; i < reports.size(); ++i)
+  {
+    PatchReport& p = reports[i];
+    total.Points += p.Points;
+    total.Rms += p.Rms;
+    total.Max = std::max(total.Max, p.Max);
+    p.Rms = p.Points ? std::sqrt(p.Rms / static_cast<double>(p.Points)) : 0.0;
+  }
+  total.Rms = total.Points ? std::sqrt(total.Rms / static_cast<double>(total.Points)) : 0.0;
+  total.DataWeight = fit.DataWeight;
+  total.RobustScale = fit.RobustScale;
+  return total;
+}
+
+class Fitter
+{
+public:
+  Fitter(const PartitionedPoints& points, const QuadMesh& quads, const G1FitOptions& options,
+    Monitor& monitor)
+      : Input(points), Full(quads), Options(options), Watch(monitor)
+  {
+  }
+
+  Result<G1FitResult> run()
+  {
+    if (Status s = checkOptions(this->Options); !s)
+    {
+      return s;
+    }
+    if (Status s = checkPoints(this->Input, this->Full); !s)
+    {
+      return s;
+    }
+    auto whole = QuadComplex::build(this->Full.Quads, static_cast<Index>(this->Full.Points.size()));
+    if (!whole)
+    {
+      return whole.status();
+    }
+    this->Cut = cutEnds(this->Full,
+      this->Options.Ends == OpenEnds::Automatic ? markByRegion(this->Full) : std::vector<char>());
+    auto complex =
+      QuadComplex::build(this->Cut.Quads.Quads, static_cast<Index>(this->Full.Points.size()));
+    if (!complex)
+    {
+      return complex.status();
+    }
+    this->Out.OpenEndCount = this->Cut.Ends;
+    this->Out.Message = this->Cut.Message;
+    return this->fitShells(*complex);
+  }
+
+private:
+  Result<G1FitResult> fitShells(const QuadComplex& complex)
+  {
+    const PatchNet net(complex, this->Options.Segments);
+    SplineSpace space;
+    const auto solver = makeSolver(complex, net, this->Options.Smoothness, space);
+    this->Out.Unknowns = solver->unknowns();
+    const ShellLayout layout{&complex, &net, &this->Full.Points};
+    std::vector<ShellFitResult> shells;
+    for (int side = 0; side < 2; ++side)
+    {
+      auto points = selectPoints(this->Input, this->Full, this->Cut, side);
+      if (side == 1 && tooFew(points, net))
+      {
+        this->say("No inner wall: there are " + std::to_string(points.size()) +
+                  " points of it; only the outer shell was fitted.");
+        break;
+      }
+      if (side == 0 && tooFew(points, net))
+      {
+        return Status::invalidInput(
+          "Only " + std::to_string(points.size()) + " points for " +
+          std::to_string(complex.faces()) +
+          " quads; give at least four a quad on average, or a layout of fewer quads.");
+      }
+      SubMonitor part(this->Watch, 0.45 * side, 0.45 * (side + 1));
+      auto fit = fitShell(layout, *solver, std::move(points),
+        rimSamples(complex, this->Full.Points, true), this->shellOptions(), part);
+      if (!fit)
+      {
+        return fit.status();
+      }
+      shells.push_back(std::move(*fit));
+    }
+    this->finish(complex, net, shells);
+    return std::move(this->Out);
+  }
+
+  static bool tooFew(const std::vector<FitPoint>& points, const PatchNet& net)
+  {
+    return static_cast<std::int64_t>(points.size()) < 4 * static_cast<std::int64_t>(net.patches());
+  }
+
+  void say(const std::string& text)
+  {
+    this->Out.Message += (this->Out.Message.empty() ? "" : " ") + text;
+  }
+
+  ShellFitOptions shellOptions() const
+  {
+    ShellFitOptions o;
+    o.Fairing = this->Options.Fairing;
+    o.Correction = this->Options.Correction;
+    o.DataWeight = this->Options.DataWeight;
+    o.Robust = this->Options.Robust;
+    o.Reassign = this->Options.Reassign;
+    return o;
+  }
+
+  void finish(
+    const QuadComplex& complex, const PatchNet& net, const std::vector<ShellFitResult>& shells)
+  {
+    double squares = 0.0;
+    double count = 0.0;
+    for (std::size_t s = 0; s < shells.size(); ++s)
+    {
+      this->Out.Shells.push_back(summarize(net, shells[s], s == 1, this->Out.Patches));
+      const ShellSummary& t = this->Out.Shells.back();
+      squares += t.Rms * t.Rms * static_cast<double>(t.Points);
+      count += static_cast<double>(t.Points);
+      this->Out.Max = std::max(this->Out.Max, t.Max);
+      this->Out.FoldedPatches += shells[s].Folded;
+      this->Out.MaxNormalJump =
+        std::max(this->Out.MaxNormalJump, largestNormalJump(complex, net, shells[s].Net));
+    }
+    this->Out.Rms = count > 0 ? std::sqrt(squares / count) : 0.0;
+    this->Out.Model =
+      buildModel(complex, net, shells[0].Net, shells.size() > 1 ? &shells[1].Net : nullptr);
+    PatchReport wall;
+    wall.Side = Shell::Wall;
+    this->Out.Patches.resize(this->Out.Model.Patches.size(), wall);
+  }
+
+  const PartitionedPoints& Input;
+  const QuadMesh& Full;
+  const G1FitOptions& Options;
+  Monitor& Watch;
+  CutLayout Cut;
+  G1FitResult Out;
+};
+} // namespace
+
+Result<G1FitResult> fitG1(const PartitionedPoints& points, const QuadMesh& quads,
+  const G1FitOptions& options, Monitor& monitor)
+{
+  return Fitter(points, quads, options, monitor).run();
+}
+} // namespace bsr

@@ -1,0 +1,90 @@
+#pragma once
+
+#include "Common/Monitor.h"
+#include "Common/Status.h"
+#include "Spline/ParameterCorrection.h"
+#include "Spline/SplineModel.h"
+
+#include <string>
+
+namespace bsr
+{
+/// How the patches of the model meet (paper 000, section 4.3).
+enum class Continuity
+{
+  FullG1,       ///< the whole G1 space on the layout
+  VertexG1,     ///< one unknown a mesh vertex, eq. 8
+  C0Reduction,  ///< eq. 7
+  C0Multipliers ///< eq. 6
+};
+
+enum class OpenEnds
+{
+  Automatic, ///< quads with EndRegion > 0 are removed, else caps that no point covers
+  KeepClosed
+};
+
+/// Points that PartitionToQuads has put on quads.
+struct PartitionedPoints
+{
+  std::vector<Vec3> Points;
+  std::vector<Index> QuadId; ///< -1: on no quad, ignored
+  std::vector<Vec2> UV;
+  std::vector<std::uint8_t> Side; ///< 0 outer, 1 inner, others ignored; empty: all outer
+  std::vector<double> Weights;    ///< empty: all 1
+};
+
+struct G1FitOptions
+{
+  Continuity Smoothness = Continuity::FullG1;
+  int Segments = 3;
+  std::vector<double> Fairing = {0.9, 0.5, 0.1};
+  CorrectionMethod Correction = CorrectionMethod::Taylor;
+  OpenEnds Ends = OpenEnds::Automatic;
+  double DataWeight = 0.0; ///< K, points a patch that the data count as; 0: from the noise
+  bool Robust = true;      ///< weigh debris and pits down
+  bool Reassign = true;    ///< points may move on to neighboring patches
+};
+
+struct PatchReport
+{
+  Shell Side = Shell::Outer;
+  std::int64_t Points = 0; ///< data points that count (robust weight > 0)
+  double Rms = 0.0;        ///< of their distances, world units
+  double Max = 0.0;
+  double MinJacobian = 1.0; ///< smallest |Su x Sv| over its mean; negative: folded
+};
+
+struct ShellSummary
+{
+  std::int64_t Points = 0;
+  std::int64_t Outliers = 0; ///< points without weight
+  double Rms = 0.0;
+  double Max = 0.0;
+  double DataWeight = 0.0;
+  double RobustScale = 0.0;
+};
+
+struct G1FitResult
+{
+  SplineModel Model;
+  std::vector<PatchReport> Patches; ///< in the order of the model's patches
+  std::vector<ShellSummary> Shells; ///< outer, inner where fitted
+  double Rms = 0.0;                 ///< of all counting points, world units
+  double Max = 0.0;
+  double MaxNormalJump = 0.0; ///< degrees
+  int FoldedPatches = 0;
+  int OpenEndCount = 0;
+  std::int64_t Unknowns = 0; ///< of one shell's system
+  double MinimumWall = 0.0;  ///< smallest distance between the shells, world units; 0 without inner
+  std::string Message;       ///< what the user should know, e.g. that there is no inner shell
+};
+
+/**
+ * Fits a network of bicubic patches, one a quad, to partitioned points: the whole of paper 000,
+ * section 4, for the outer and, where points of it are given, the inner shell of a hollow body,
+ * joined at open ends by ruled walls.
+ */
+Result<G1FitResult> fitG1(const PartitionedPoints& points, const QuadMesh& quads,
+  const G1FitOptions& options, Monitor& monitor);
+} // namespace bsr

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "Spline/FitPoints.h"
+
+namespace bsr
+{
+/// How data points move to the nearest parameters on their patch (paper 000, section 4.2.1).
+enum class CorrectionMethod
+{
+  Taylor, ///< one first-order step
+  Newton  ///< to convergence, with second derivatives
+};
+
+/**
+ * Moves the parameters of the points (sorted by patch) toward the foot of their perpendicular:
+ * steps are limited to 0.25 and clamped to the unit square; on an active border the step runs along
+ * it. With a complex given, a point whose step leaves its patch across an inner side goes on to
+ * the neighbor; without, it stays (as in the paper). Fixed points do not move.
+ */
+void correctParameters(const PatchNet& net, const NetPoints& surface, CorrectionMethod method,
+  std::vector<FitPoint>& points, const QuadComplex* complex = nullptr);
+
+/// Distance of each point to the surface at its parameters, and its component along the normal.
+struct Residual
+{
+  double Distance = 0.0;
+  double Normal = 0.0; ///< positive where the point lies outside
+};
+std::vector<Residual> residuals(
+  const PatchNet& net, const NetPoints& surface, const std::vector<FitPoint>& points);
+} // namespace bsr

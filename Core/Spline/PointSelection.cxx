@@ -1,0 +1,161 @@
+#include "Spline/PointSelection.h"
+
+#include <nanoflann.hpp>
+
+#include <cmath>
+
+namespace bsr
+{
+namespace
+{
+constexpr int Grid = 9; ///< samples along a side in the search for the nearest quad
+
+/// Samples of the remaining quads, for nanoflann.
+struct QuadSamples
+{
+  std::vector<Vec3> Points;
+  std::size_t kdtree_get_point_count() const { return this->Points.size(); }
+  double kdtree_get_pt(std::size_t i, std::size_t d) const
+  {
+    return this->Points[i][static_cast<Eigen::Index>(d)];
+  }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const
+  {
+    return false;
+  }
+};
+
+using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, QuadSamples>,
+  QuadSamples, 3>;
+
+QuadSamples sampleQuads(const QuadMesh& quads, const CutLayout& cut)
+{
+  QuadSamples s;
+  for (const Index q : cut.Kept)
+  {
+    for (int k = 0; k < Grid * Grid; ++k)
+    {
+      s.Points.push_back(bilinearPoint(quads, q, k % Grid / (Grid - 1.0), k / Grid / (Grid - 1.0)));
+    }
+  }
+  return s;
+}
+
+double median(std::vector<double> v)
+{
+  if (v.empty())
+  {
+    return 0.0;
+  }
+  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+  std::nth_element(v.begin(), middle, v.end());
+  return *middle;
+}
+
+/// Gives cap points a new place where the wall is near.
+void placeCapPoints(
+  const QuadMesh& quads, const CutLayout& cut, double reach, std::vector<FitPoint>& caps)
+{
+  const QuadSamples samples = sampleQuads(quads, cut);
+  const Tree tree(3, samples, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+  for (FitPoint& p : caps)
+  {
+    unsigned int nearest = 0;
+    double distance2 = 0.0;
+    tree.knnSearch(p.Position.data(), 1, &nearest, &distance2);
+    const auto local = static_cast<int>(nearest % (Grid * Grid));
+    p.Patch = std::sqrt(distance2) <= reach ? static_cast<Index>(nearest / (Grid * Grid)) : -1;
+    p.U = local % Grid / (Grid - 1.0);
+    p.V = local / Grid / (Grid - 1.0);
+  }
+}
+} // namespace
+
+Status checkPoints(const PartitionedPoints& points, const QuadMesh& quads)
+{
+  const std::size_t n = points.Points.size();
+  if (n == 0)
+  {
+    return Status::invalidInput(
+      "There are no points to fit; connect the output of PartitionToQuads.");
+  }
+  if (points.QuadId.size() != n || points.UV.size() != n ||
+      (!points.Side.empty() && points.Side.size() != n) ||
+      (!points.Weights.empty() && points.Weights.size() != n))
+  {
+    return Status::invalidInput(
+      "QuadId, UV, Side or the weights do not have one value a point; apply "
+      "PartitionToQuads to these points.");
+  }
+  const auto quadCount = static_cast<Index>(quads.Quads.size());
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const std::string name = "Point " + std::to_string(i);
+    if (points.QuadId[i] < -1 || points.QuadId[i] >= quadCount)
+    {
+      return Status::invalidInput(name + " has QuadId " + std::to_string(points.QuadId[i]) +
+                                  ", but the layout has " + std::to_string(quadCount) +
+                                  " quads; partition the points with this layout.");
+    }
+    if (!points.Points[i].allFinite() || !points.UV[i].allFinite())
+    {
+      return Status::invalidInput(
+        name + " has a NaN or infinite coordinate or UV; remove such points first.");
+    }
+    if (!points.Weights.empty() && !(points.Weights[i] >= 0.0 && std::isfinite(points.Weights[i])))
+    {
+      return Status::invalidInput(
+        name + " has a negative, NaN or infinite weight; weights must be 0 or positive.");
+    }
+  }
+  return Status::ok();
+}
+
+Vec3 bilinearPoint(const QuadMesh& quads, Index quad, double u, double v)
+{
+  const auto& q = quads.Quads[quad];
+  const auto& p = quads.Points;
+  return (1 - v) * ((1 - u) * p[q[0]] + u * p[q[1]]) + v * ((1 - u) * p[q[3]] + u * p[q[2]]);
+}
+
+std::vector<FitPoint> selectPoints(
+  const PartitionedPoints& points, const QuadMesh& quads, const CutLayout& cut, int side)
+{
+  std::vector<FitPoint> own;
+  std::vector<FitPoint> caps;
+  std::vector<double> distance;
+  for (std::size_t i = 0; i < points.Points.size(); ++i)
+  {
+    const int itsSide = points.Side.empty() ? 0 : points.Side[i];
+    if (itsSide != side || points.QuadId[i] < 0)
+    {
+      continue;
+    }
+    FitPoint p;
+    p.Position = points.Points[i];
+    p.U = std::clamp(points.UV[i][0], 0.0, 1.0);
+    p.V = std::clamp(points.UV[i][1], 0.0, 1.0);
+    p.Weight = points.Weights.empty() ? 1.0 : points.Weights[i];
+    p.Source = static_cast<Index>(i);
+    p.Patch = cut.NewId[points.QuadId[i]];
+    if (p.Patch >= 0)
+    {
+      distance.push_back((p.Position - bilinearPoint(quads, points.QuadId[i], p.U, p.V)).norm());
+      own.push_back(p);
+    }
+    else
+    {
+      caps.push_back(p);
+    }
+  }
+  if (!caps.empty() && !own.empty())
+  {
+    placeCapPoints(quads, cut, 1.3 * median(distance), caps);
+    std::copy_if(caps.begin(), caps.end(), std::back_inserter(own),
+      [](const FitPoint& p) { return p.Patch >= 0; });
+  }
+  sortByPatch(own, static_cast<Index>(cut.Kept.size()));
+  return own;
+}
+} // namespace bsr

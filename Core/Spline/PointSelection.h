@@ -1,0 +1,21 @@
+#pragma once
+
+#include "Spline/G1Fit.h"
+#include "Spline/LayoutEnds.h"
+
+namespace bsr
+{
+/// Array sizes, QuadId within the layout, finite UV and weights; one error that names the cure.
+Status checkPoints(const PartitionedPoints& points, const QuadMesh& quads);
+
+/// The bilinear point of a quad.
+Vec3 bilinearPoint(const QuadMesh& quads, Index quad, double u, double v);
+
+/**
+ * The points of a side (0 outer, 1 inner) on the quads that remain. Points on removed caps go to
+ * the nearest remaining quad where they are as near to it as the side's other points are to theirs
+ * (the wall next to a rim), and are dropped otherwise (the end face).
+ */
+std::vector<FitPoint> selectPoints(
+  const PartitionedPoints& points, const QuadMesh& quads, const CutLayout& cut, int side);
+} // namespace bsr

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "Common/Monitor.h"
+#include "Spline/FitSystem.h"
+#include "Spline/ParameterCorrection.h"
+
+namespace bsr
+{
+/// A place on a border side where the surface shall be: fixed parameters, a target in space.
+struct RimSample
+{
+  Index HalfEdge = -1;
+  double T = 0.0; ///< along the half-edge
+  Vec3 Target = Vec3::Zero();
+  /// If not zero: only the component along this unit direction counts.
+  Vec3 Direction = Vec3::Zero();
+};
+
+struct ShellFitOptions
+{
+  std::vector<double> Fairing = {0.9, 0.5, 0.1}; ///< lambda of each pass, in [0, 1)
+  CorrectionMethod Correction = CorrectionMethod::Taylor;
+  double DataWeight = 0.0; ///< K: reference points a patch; 0: found by cross-validation
+  bool Robust = true;      ///< weigh outliers down (Tukey)
+  bool Reassign = true;    ///< points may move on to neighboring patches
+  int ExtraPasses = 2;     ///< repetitions of the last pass
+};
+
+struct ShellFitResult
+{
+  NetPoints Net;
+  std::vector<FitPoint> Points; ///< with final parameters and weights, sorted by patch
+  double DataWeight = 0.0;      ///< K used
+  double RobustScale = 0.0;     ///< sigma of the residuals, world units
+  int Folded = 0;               ///< patches still folded at the end
+  int Unfolded = 0;             ///< patches that needed the cure
+};
+
+/// Everything about the layout that both shells share.
+struct ShellLayout
+{
+  const QuadComplex* Complex = nullptr;
+  const PatchNet* Net = nullptr;
+  const std::vector<Vec3>* Vertices = nullptr;
+};
+
+/**
+ * Fits one shell: for each lambda solve, correct parameters, weigh outliers down; finds the balance
+ * K; unfolds patches by local fairing.
+ */
+Result<ShellFitResult> fitShell(const ShellLayout& layout, FitSolver& solver,
+  std::vector<FitPoint> points, const std::vector<RimSample>& rim, const ShellFitOptions& options,
+  Monitor& monitor);
+
+/// Side lengths of the patches along u and v in units of the mean patch size, limited to 1/3 .. 3.
+std::vector<std::array<double, 2>> patchAspects(
+  const QuadComplex& complex, const std::vector<Vec3>& vertices);
+} // namespace bsr
