@@ -1,6 +1,7 @@
 #include "Spline/DataBalance.h"
 
 #include "Spline/ParameterCorrection.h"
+#include "Spline/PointTree.h"
 
 #include <cmath>
 
@@ -16,6 +17,34 @@ int foldOf(const FitPoint& p)
   const unsigned quarter = (p.U < 0.5 ? 0u : 1u) + (p.V < 0.5 ? 0u : 2u);
   return static_cast<int>(
     (quarter + 2654435761u * static_cast<unsigned>(p.Patch) / 65536u) % Folds);
+}
+
+/// Correlation of the residuals of nearest neighbors: near 0 for white noise, else up to 1.
+double neighborCorrelation(
+  const PatchNet& net, const NetPoints& surface, const std::vector<FitPoint>& points)
+{
+  std::vector<FitPoint> counting;
+  std::copy_if(points.begin(), points.end(), std::back_inserter(counting),
+    [](const FitPoint& p) { return !p.Fixed && p.weight() > 0.0; });
+  if (counting.size() < 2)
+  {
+    return 0.0;
+  }
+  const auto r = residuals(net, surface, counting);
+  std::vector<Vec3> places;
+  for (const FitPoint& p : counting)
+  {
+    places.push_back(p.Position);
+  }
+  const PointTree tree(std::move(places));
+  double product = 0.0;
+  double square = 0.0;
+  for (std::size_t i = 0; i < r.size(); ++i)
+  {
+    product += r[i].Normal * r[tree.nearestOther(static_cast<Index>(i))].Normal;
+    square += r[i].Normal * r[i].Normal;
+  }
+  return square > 0.0 ? std::clamp(product / square, 0.0, 1.0) : 0.0;
 }
 
 struct Fold
@@ -80,13 +109,22 @@ Result<std::vector<BalanceScore>> scanDataWeight(const PatchNet& net, FitSolver&
       weight += p.weight();
     }
   }
-  std::size_t chosen = 0;
+  std::size_t least = 0;
   for (std::size_t i = 0; i < scores.size(); ++i)
   {
     scores[i].Error = std::sqrt(scores[i].Error / std::max(weight, 1e-300));
-    chosen = scores[i].Error < scores[chosen].Error ? i : chosen;
+    least = scores[i].Error < scores[least].Error ? i : least;
   }
-  best = scores[chosen].DataWeight;
+  auto surface = solver.solveRoughly(equations.blocks(net, lambda, scores[least].DataWeight));
+  if (!surface)
+  {
+    return surface.status();
+  }
+  const double correlation = neighborCorrelation(net, *surface, points);
+  const double limit = scores[least].Error * (1.0 + 0.2 * correlation);
+  const auto chosen = std::find_if(
+    scores.begin(), scores.end(), [limit](const BalanceScore& s) { return s.Error <= limit; });
+  best = chosen->DataWeight;
   return scores;
 }
 } // namespace bsr

@@ -1,6 +1,6 @@
 #include "Spline/PointSelection.h"
 
-#include <nanoflann.hpp>
+#include "Spline/PointTree.h"
 
 #include <cmath>
 
@@ -10,36 +10,17 @@ namespace
 {
 constexpr int Grid = 9; ///< samples along a side in the search for the nearest quad
 
-/// Samples of the remaining quads, for nanoflann.
-struct QuadSamples
+std::vector<Vec3> sampleQuads(const QuadMesh& quads, const CutLayout& cut)
 {
-  std::vector<Vec3> Points;
-  std::size_t kdtree_get_point_count() const { return this->Points.size(); }
-  double kdtree_get_pt(std::size_t i, std::size_t d) const
-  {
-    return this->Points[i][static_cast<Eigen::Index>(d)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const
-  {
-    return false;
-  }
-};
-
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, QuadSamples>,
-  QuadSamples, 3>;
-
-QuadSamples sampleQuads(const QuadMesh& quads, const CutLayout& cut)
-{
-  QuadSamples s;
+  std::vector<Vec3> samples;
   for (const Index q : cut.Kept)
   {
     for (int k = 0; k < Grid * Grid; ++k)
     {
-      s.Points.push_back(bilinearPoint(quads, q, k % Grid / (Grid - 1.0), k / Grid / (Grid - 1.0)));
+      samples.push_back(bilinearPoint(quads, q, k % Grid / (Grid - 1.0), k / Grid / (Grid - 1.0)));
     }
   }
-  return s;
+  return samples;
 }
 
 double median(std::vector<double> v)
@@ -57,15 +38,12 @@ double median(std::vector<double> v)
 void placeCapPoints(
   const QuadMesh& quads, const CutLayout& cut, double reach, std::vector<FitPoint>& caps)
 {
-  const QuadSamples samples = sampleQuads(quads, cut);
-  const Tree tree(3, samples, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+  const PointTree tree(sampleQuads(quads, cut));
   for (FitPoint& p : caps)
   {
-    unsigned int nearest = 0;
-    double distance2 = 0.0;
-    tree.knnSearch(p.Position.data(), 1, &nearest, &distance2);
-    const auto local = static_cast<int>(nearest % (Grid * Grid));
-    p.Patch = std::sqrt(distance2) <= reach ? static_cast<Index>(nearest / (Grid * Grid)) : -1;
+    const auto [nearest, distance2] = tree.nearest(p.Position);
+    const int local = nearest % (Grid * Grid);
+    p.Patch = std::sqrt(distance2) <= reach ? nearest / (Grid * Grid) : -1;
     p.U = local % Grid / (Grid - 1.0);
     p.V = local / Grid / (Grid - 1.0);
   }

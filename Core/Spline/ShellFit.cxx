@@ -86,9 +86,16 @@ private:
   {
     std::vector<FitPoint> all = this->Points;
     const NetEvaluator surface(this->Net, this->Surface);
-    const double share = this->TotalWeight / this->Net.patches() / 8.0;
+    // A side's samples weigh a sixth of a patch's data: enough against drift along the fiber, too
+    // little to hold the border back across it.
+    const double share = this->TotalWeight / this->Net.patches() / 48.0;
     for (const RimSample& r : this->Rim)
     {
+      const bool directed = r.Direction.squaredNorm() > 0.0;
+      if (directed && this->Surface.rows() == 0)
+      {
+        continue;
+      }
       const double t = r.T;
       const double uv[4][2] = {{t, 0.0}, {1.0, t}, {1.0 - t, 1.0}, {0.0, 1.0 - t}};
       FitPoint p;
@@ -98,7 +105,7 @@ private:
       p.Position = r.Target;
       p.Weight = share;
       p.Fixed = true;
-      if (r.Direction.squaredNorm() > 0.0 && this->Surface.rows() > 0)
+      if (directed)
       {
         const Vec3 s = surface.at(p.Patch, p.U, p.V).Point;
         p.Position = s + r.Direction * r.Direction.dot(r.Target - s);

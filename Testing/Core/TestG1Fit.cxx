@@ -1,0 +1,380 @@
+#include "SplineMeshes.h"
+
+#include "Spline/Evaluate.h"
+#include "Spline/G1Fit.h"
+#include "Spline/ModelCheck.h"
+
+#include <gtest/gtest.h>
+
+#include <tbb/global_control.h>
+
+#include <functional>
+
+using namespace bsr;
+
+namespace
+{
+using Project = std::function<Vec3(const Vec3&)>;
+
+Vec3 bilinear(const QuadMesh& m, Index f, double u, double v)
+{
+  const auto& q = m.Quads[f];
+  return (1 - v) * ((1 - u) * m.Points[q[0]] + u * m.Points[q[1]]) +
+         v * ((1 - u) * m.Points[q[3]] + u * m.Points[q[2]]);
+}
+
+/// n x n points a quad, put on a surface; sides as given.
+PartitionedPoints sample(
+  const QuadMesh& m, int n, const Project& onto, double noise = 0.0, int side = -1)
+{
+  PartitionedPoints p;
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  for (Index f = 0; f < static_cast<Index>(m.Quads.size()); ++f)
+  {
+    for (int k = 0; k < n * n; ++k)
+    {
+      const Vec2 uv((k % n + 0.5) / n, (k / n + 0.5) / n);
+      const Vec3 d(normal(random), normal(random), normal(random));
+      p.Points.push_back(onto(bilinear(m, f, uv[0], uv[1])) + noise * d);
+      p.QuadId.push_back(f);
+      p.UV.push_back(uv);
+      if (side >= 0)
+      {
+        p.Side.push_back(static_cast<std::uint8_t>(side));
+      }
+    }
+  }
+  return p;
+}
+
+void append(PartitionedPoints& a, const PartitionedPoints& b)
+{
+  a.Points.insert(a.Points.end(), b.Points.begin(), b.Points.end());
+  a.QuadId.insert(a.QuadId.end(), b.QuadId.begin(), b.QuadId.end());
+  a.UV.insert(a.UV.end(), b.UV.begin(), b.UV.end());
+  a.Side.insert(a.Side.end(), b.Side.begin(), b.Side.end());
+}
+
+Vec3 toSphere(const Vec3& p)
+{
+  return p.normalized();
+}
+
+/// Root mean square and largest distance of the model's surface to where `onto` projects it.
+std::pair<double, double> deviation(const SplineModel& model, const Project& onto, Shell side)
+{
+  double sum = 0.0;
+  double worst = 0.0;
+  int count = 0;
+  for (const SplinePatch& p : model.Patches)
+  {
+    for (int k = 0; k < 64 && p.Side == side; ++k)
+    {
+      const Vec3 x = evaluatePatch(model, p, (k % 8 + 0.5) / 8, (k / 8 + 0.5) / 8).Point;
+      const double d = (x - onto(x)).norm();
+      sum += d * d;
+      worst = std::max(worst, d);
+      ++count;
+    }
+  }
+  return {std::sqrt(sum / count), worst};
+}
+
+G1FitResult fitted(const PartitionedPoints& p, const QuadMesh& m, const G1FitOptions& o)
+{
+  Monitor monitor;
+  auto r = fitG1(p, m, o, monitor);
+  EXPECT_TRUE(r) << r.status().message();
+  return r ? std::move(*r) : G1FitResult();
+}
+
+std::string failure(const PartitionedPoints& p, const QuadMesh& m, const G1FitOptions& o = {})
+{
+  Monitor monitor;
+  const auto r = fitG1(p, m, o, monitor);
+  EXPECT_FALSE(r);
+  return r.status().message();
+}
+
+/// A thick tube along x of radii 1 and 0.7 with capped ends, the caps in regions 1 and 2.
+QuadMesh cappedTube(int along)
+{
+  QuadMesh m = meshes::tube(8, along);
+  m.Region.assign(m.Quads.size(), 0);
+  for (int end = 0; end < 2; ++end)
+  {
+    const Index first = end ? 8 * along : 0;
+    const double x = end ? 4.0 : 0.0;
+    const Index inside = static_cast<Index>(m.Points.size());
+    for (int i = 0; i < 8; ++i)
+    {
+      m.Points.emplace_back(x, 0.5 * std::cos(M_PI * i / 4), 0.5 * std::sin(M_PI * i / 4));
+    }
+    m.Points.emplace_back(x, 0, 0);
+    const auto add = [&](std::array<Index, 4> q)
+    {
+      if (end == 0)
+      {
+        std::swap(q[1], q[3]);
+      }
+      m.Quads.push_back(q);
+      m.Region.push_back(end + 1);
+    };
+    for (int i = 0; i < 8; ++i)
+    {
+      add({first + i, first + (i + 1) % 8, inside + (i + 1) % 8, inside + i});
+    }
+    for (int i = 0; i < 8; i += 2)
+    {
+      add({inside + i, inside + (i + 1) % 8, inside + (i + 2) % 8, inside + 8});
+    }
+  }
+  return m;
+}
+
+Vec3 toTube(const Vec3& p, double radius)
+{
+  const double r = std::hypot(p[1], p[2]);
+  return {p[0], radius * p[1] / r, radius * p[2] / r};
+}
+} // namespace
+
+TEST(G1Fit, SphereIsAsCloseAsTheSpecificationSays)
+{
+  const QuadMesh m = meshes::sphere(1);
+  const PartitionedPoints p = sample(m, 12, toSphere);
+  G1FitOptions o;
+  o.DataWeight = 1e6;
+  const G1FitResult r = fitted(p, m, o);
+  const auto [rms, worst] = deviation(r.Model, toSphere, Shell::Outer);
+  EXPECT_LE(rms, 1e-4);
+  EXPECT_LE(worst, 5e-4);
+  EXPECT_LE(r.MaxNormalJump, 1e-8);
+  EXPECT_EQ(r.FoldedPatches, 0);
+  EXPECT_EQ(r.Unknowns, 816);
+  EXPECT_EQ(r.Model.Patches.size(), 24u);
+  EXPECT_TRUE(checkModel(r.Model));
+  EXPECT_NE(r.Message.find("outer shell"), std::string::npos);
+}
+
+TEST(G1Fit, BalanceFollowsTheNoise)
+{
+  const QuadMesh m = meshes::sphere(2);
+  const G1FitResult clean = fitted(sample(m, 12, toSphere), m, {});
+  const G1FitResult noisy = fitted(sample(m, 12, toSphere, 0.01), m, {});
+  EXPECT_GE(clean.Shells[0].DataWeight, 1e3);
+  EXPECT_LE(noisy.Shells[0].DataWeight, 300);
+  EXPECT_LE(deviation(clean.Model, toSphere, Shell::Outer).first, 1e-4);
+  EXPECT_LE(deviation(noisy.Model, toSphere, Shell::Outer).first, 2.5e-3);
+}
+
+TEST(G1Fit, FullSpaceIsFiveTimesCloserThanTheVertexSpace)
+{
+  const QuadMesh m = meshes::torus(12, 8);
+  const auto toTorus = [](const Vec3& p)
+  {
+    const Vec3 c = 3.0 * Vec3(p[0], p[1], 0).normalized();
+    return Vec3(c + (p - c).normalized());
+  };
+  const PartitionedPoints p = sample(m, 12, toTorus);
+  const auto rms = [&](Continuity c)
+  {
+    G1FitOptions o;
+    o.Smoothness = c;
+    const G1FitResult r = fitted(p, m, o);
+    const double d = deviation(r.Model, toTorus, Shell::Outer).first;
+    std::printf("  continuity %d: unknowns %d, rms %.3g, jump %.3g deg, K %g\n",
+      static_cast<int>(c), static_cast<int>(r.Unknowns), d, r.MaxNormalJump,
+      r.Shells[0].DataWeight);
+    if (c == Continuity::FullG1 || c == Continuity::VertexG1)
+    {
+      EXPECT_LE(r.MaxNormalJump, 1e-8);
+    }
+    return d;
+  };
+  const double full = rms(Continuity::FullG1);
+  EXPECT_LE(5.0 * full, rms(Continuity::VertexG1));
+  EXPECT_GT(rms(Continuity::C0Reduction), 0.0);
+}
+
+TEST(G1Fit, MultipliersAndReductionAgree)
+{
+  const QuadMesh m = meshes::sphere(1);
+  const PartitionedPoints p = sample(m, 8, toSphere);
+  G1FitOptions o;
+  o.DataWeight = 1e3;
+  o.Smoothness = Continuity::C0Reduction;
+  const G1FitResult a = fitted(p, m, o);
+  o.Smoothness = Continuity::C0Multipliers;
+  const G1FitResult b = fitted(p, m, o);
+  EXPECT_GT(b.Unknowns, a.Unknowns);
+  ASSERT_EQ(a.Model.ControlPoints.size(), b.Model.ControlPoints.size());
+  for (std::size_t i = 0; i < a.Model.ControlPoints.size(); ++i)
+  {
+    EXPECT_LE((a.Model.ControlPoints[i] - b.Model.ControlPoints[i]).norm(), 1e-7);
+  }
+}
+
+TEST(G1Fit, ScaleDoesNotMatter)
+{
+  const QuadMesh m = meshes::sphere(1);
+  PartitionedPoints p = sample(m, 8, toSphere, 0.01);
+  const G1FitResult a = fitted(p, m, {});
+  QuadMesh large = m;
+  for (auto* list : {&large.Points, &p.Points})
+  {
+    for (Vec3& x : *list)
+    {
+      x *= 1024.0;
+    }
+  }
+  const G1FitResult b = fitted(p, large, {});
+  EXPECT_EQ(a.Shells[0].DataWeight, b.Shells[0].DataWeight);
+  for (std::size_t i = 0; i < a.Model.ControlPoints.size(); ++i)
+  {
+    EXPECT_LE(
+      (1024.0 * a.Model.ControlPoints[i] - b.Model.ControlPoints[i]).head<3>().norm(), 1e-7);
+  }
+}
+
+TEST(G1Fit, RobustWeightsDropDebris)
+{
+  const QuadMesh m = meshes::sphere(2);
+  PartitionedPoints p = sample(m, 12, toSphere, 0.002);
+  std::mt19937 random(11);
+  for (std::size_t i = 0; i < p.Points.size(); ++i)
+  {
+    // A tenth of all points, in lumps, far outside.
+    if ((i / 20) % 10 == 0)
+    {
+      p.Points[i] *= 1.05 + 0.1 * (random() / 4.3e9);
+    }
+  }
+  G1FitOptions o;
+  const double with = deviation(fitted(p, m, o).Model, toSphere, Shell::Outer).first;
+  o.Robust = false;
+  const double without = deviation(fitted(p, m, o).Model, toSphere, Shell::Outer).first;
+  EXPECT_LE(with, 0.002);
+  EXPECT_GE(without, 3.0 * with);
+}
+
+TEST(G1Fit, HollowTubeWithOpenEnds)
+{
+  const QuadMesh m = cappedTube(8);
+  const auto outer = [](const Vec3& x) { return toTube(x, 1.0); };
+  const auto inner = [](const Vec3& x) { return toTube(x, 0.7); };
+  PartitionedPoints p = sample(m, 10, outer, 0.0, 0);
+  append(p, sample(m, 10, inner, 0.0, 1));
+  for (std::size_t i = 0; i < p.Points.size(); ++i)
+  {
+    p.Side[i] = m.Region[p.QuadId[i]] > 0 ? 255 : p.Side[i];
+  }
+  const G1FitResult r = fitted(p, m, {});
+  EXPECT_EQ(r.OpenEndCount, 2);
+  ASSERT_TRUE(checkModel(r.Model));
+  EXPECT_EQ(r.Model.Patches.size(), 64u + 64u + 16u);
+  EXPECT_EQ(r.FoldedPatches, 0);
+  EXPECT_LE(r.MaxNormalJump, 1e-8);
+  EXPECT_LE(deviation(r.Model, outer, Shell::Outer).second, 0.01);
+  EXPECT_LE(deviation(r.Model, inner, Shell::Inner).second, 0.01);
+  // The walls lie in the end planes, and every normal points out of the solid.
+  for (const SplinePatch& patch : r.Model.Patches)
+  {
+    const SurfacePoint s = evaluatePatch(r.Model, patch, 0.5, 0.5);
+    const Vec3 radial(0, s.Point[1], s.Point[2]);
+    if (patch.Side == Shell::Wall)
+    {
+      EXPECT_NEAR(std::abs(s.Point[0] - 2.0), 2.0, 0.03);
+      EXPECT_GT(s.normal()[0] * (s.Point[0] - 2.0), 0.0);
+    }
+    else
+    {
+      EXPECT_GT(s.normal().dot(radial) * (patch.Side == Shell::Outer ? 1 : -1), 0.0);
+    }
+  }
+  for (const auto& n : r.Model.Neighbors)
+  {
+    EXPECT_TRUE(n[0] >= 0 && n[1] >= 0 && n[2] >= 0 && n[3] >= 0);
+  }
+  G1FitOptions closed;
+  closed.Ends = OpenEnds::KeepClosed;
+  EXPECT_EQ(fitted(p, m, closed).OpenEndCount, 0);
+}
+
+TEST(G1Fit, EmptyPatchesAreCarriedAndDoNotFold)
+{
+  const QuadMesh m = meshes::sphere(2);
+  PartitionedPoints p = sample(m, 10, toSphere, 0.003);
+  for (Index& q : p.QuadId)
+  {
+    q = q % 12 == 0 ? -1 : q;
+  }
+  const G1FitResult r = fitted(p, m, {});
+  EXPECT_EQ(r.FoldedPatches, 0);
+  EXPECT_LE(deviation(r.Model, toSphere, Shell::Outer).second, 0.03);
+}
+
+TEST(G1Fit, ThreadsDoNotChangeABit)
+{
+  const QuadMesh m = meshes::sphere(2);
+  const PartitionedPoints p = sample(m, 10, toSphere, 0.01);
+  std::vector<Vec4> first;
+  for (const int threads : {1, 2})
+  {
+    tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    const G1FitResult r = fitted(p, m, {});
+    if (first.empty())
+    {
+      first = r.Model.ControlPoints;
+    }
+    EXPECT_TRUE(first == r.Model.ControlPoints);
+  }
+}
+
+TEST(G1Fit, BadInputIsOneClearError)
+{
+  const QuadMesh m = meshes::sphere(1);
+  const PartitionedPoints good = sample(m, 6, toSphere);
+  EXPECT_NE(failure({}, m).find("no points"), std::string::npos);
+  PartitionedPoints p = good;
+  p.QuadId[5] = 24;
+  EXPECT_NE(failure(p, m).find("QuadId 24"), std::string::npos);
+  p = good;
+  p.UV.pop_back();
+  EXPECT_NE(failure(p, m).find("PartitionToQuads"), std::string::npos);
+  p = good;
+  p.Points[0][1] = std::nan("");
+  EXPECT_NE(failure(p, m).find("NaN"), std::string::npos);
+  p = good;
+  p.Weights.assign(p.Points.size(), 1.0);
+  p.Weights[3] = -1.0;
+  EXPECT_NE(failure(p, m).find("weight"), std::string::npos);
+  p = sample(m, 1, toSphere);
+  EXPECT_NE(failure(p, m).find("points for 24 quads"), std::string::npos);
+  QuadMesh torn = m;
+  torn.Quads.push_back(torn.Quads[0]);
+  EXPECT_NE(failure(good, torn).find("manifold"), std::string::npos);
+  G1FitOptions o;
+  o.Segments = 2;
+  EXPECT_NE(failure(good, m, o).find("SegmentsPerSide"), std::string::npos);
+  o = {};
+  o.Fairing = {1.0};
+  EXPECT_NE(failure(good, m, o).find("Fairing"), std::string::npos);
+  o = {};
+  o.DataWeight = -1;
+  EXPECT_NE(failure(good, m, o).find("DataWeight"), std::string::npos);
+}
+
+TEST(G1Fit, CancelsWithoutResult)
+{
+  struct Stop : Monitor
+  {
+    bool cancelled() override { return ++this->Asked > 3; }
+    int Asked = 0;
+  } stop;
+  const QuadMesh m = meshes::sphere(1);
+  const auto r = fitG1(sample(m, 8, toSphere), m, {}, stop);
+  ASSERT_FALSE(r);
+  EXPECT_EQ(r.status().code(), StatusCode::Cancelled);
+}
