@@ -51,11 +51,11 @@ Candidate newton(const Patch& b, const Vec3& p, double s, double t)
     const double dt = (st * gs - ss * gt) / det;
     s = std::clamp(s + ds, -1.5, 1.5);
     t = std::clamp(t + dt, -1.5, 1.5);
-    if (std::abs(ds) + std::abs(dt) < 1e-13)
+    if (std::abs(ds) + std::abs(dt) < 1e-7)
     {
-      break;
+      break; // quadratic convergence: this step leaves some 1e-14
     }
-    if (iteration > 2 && (std::abs(s) >= 1.5 || std::abs(t) >= 1.5))
+    if (iteration > 1 && (std::abs(s) >= 1.5 || std::abs(t) >= 1.5))
     {
       return {};
     }
@@ -67,23 +67,32 @@ Candidate newton(const Patch& b, const Vec3& p, double s, double t)
   return {s, t, (b.C + s * (b.A + t * b.D) + t * b.B - p).squaredNorm()};
 }
 
-/// The nearest point on the four sides, exactly.
+/// Improves `best` by the nearest point on one side, exactly; sides t = -1, t = 1, s = -1, s = 1.
 template <class Patch>
-Candidate onSides(const Patch& b, const Vec3& p)
+void onSide(const Patch& b, const Vec3& p, int side, Candidate& best)
 {
-  Candidate best;
-  for (int side = 0; side < 4; ++side)
+  const double fixed = side % 2 ? 1.0 : -1.0;
+  const bool alongS = side < 2;
+  const Vec3 middle = b.C + fixed * (alongS ? b.B : b.A);
+  const Vec3 half = (alongS ? b.A : b.B) + fixed * b.D;
+  const double x = onSegment(middle, half, p);
+  const double d = (middle + x * half - p).squaredNorm();
+  if (d < best.Squared)
   {
-    const double fixed = side % 2 ? 1.0 : -1.0;
-    const bool alongS = side < 2;
-    const Vec3 middle = b.C + fixed * (alongS ? b.B : b.A);
-    const Vec3 half = (alongS ? b.A : b.B) + fixed * b.D;
-    const double x = onSegment(middle, half, p);
-    const double d = (middle + x * half - p).squaredNorm();
-    if (d < best.Squared)
-    {
-      best = {alongS ? x : fixed, alongS ? fixed : x, d};
-    }
+    best = {alongS ? x : fixed, alongS ? fixed : x, d};
+  }
+}
+
+/// The general case: several stationary points are possible.
+template <class Patch>
+Candidate searchAll(const Patch& b, const Vec3& p)
+{
+  Candidate best = newton(b, p, 0.0, 0.0);
+  for (int k = 0; k < 4; ++k)
+  {
+    onSide(b, p, k, best);
+    const Candidate c = newton(b, p, k % 2 ? 0.9 : -0.9, k / 2 ? 0.9 : -0.9);
+    best = c.Squared < best.Squared ? c : best;
   }
   return best;
 }
@@ -109,6 +118,15 @@ NearestQuad::NearestQuad(const QuadMesh& mesh)
     n = n.norm() > 0.0 ? Vec3(n.normalized()) : Vec3(Vec3::UnitZ());
     Vec3 a = b.A - n * n.dot(b.A);
     a = a.norm() > 0.0 ? Vec3(a.normalized()) : Vec3(n.unitOrthogonal());
+    b.AA = b.A.squaredNorm();
+    b.BB = b.B.squaredNorm();
+    b.AB = b.A.dot(b.B);
+    const double det = b.AA * b.BB - b.AB * b.AB;
+    b.Inverse = det > 1e-14 * b.AA * b.BB ? 1.0 / det : 0.0;
+    // The twist moves the tangents by D; small against the patch's width, or no shortcut.
+    const double width = std::sqrt(std::max(det, 0.0));
+    const double skew = b.D.norm() * std::sqrt(std::max(b.AA, b.BB));
+    b.Convex = b.Inverse > 0.0 && skew < 0.2 * width ? 0.2 * width : -1.0;
     b.Axes << a.transpose(), n.cross(a).transpose(), n.transpose();
     Box local;
     Box box;
@@ -133,29 +151,42 @@ double NearestQuad::boxDistance(const Patch& b, const Vec3& p)
 
 QuadHit NearestQuad::project(const Patch& b, const Vec3& p)
 {
-  // Start from the patch's tangent plane in its middle.
   const Vec3 r = p - b.C;
-  const double aa = b.A.squaredNorm();
-  const double bb = b.B.squaredNorm();
-  const double ab = b.A.dot(b.B);
-  const double det = aa * bb - ab * ab;
-  const double ra = r.dot(b.A);
-  const double rb = r.dot(b.B);
-  const bool regular = det > 1e-14 * aa * bb;
-  const double s = regular ? std::clamp((bb * ra - ab * rb) / det, -1.0, 1.0) : 0.0;
-  const double t = regular ? std::clamp((aa * rb - ab * ra) / det, -1.0, 1.0) : 0.0;
-  Candidate best = newton(b, p, s, t);
-  // Far from a twisted patch there may be several stationary points.
-  const bool twisted = std::abs(r.dot(b.D)) + b.D.squaredNorm() > 0.25 * std::sqrt(std::abs(det));
-  if (twisted || !(best.Squared < std::numeric_limits<double>::infinity()))
+  const double offset = std::abs(r.dot(b.D));
+  Candidate best;
+  if (offset > b.Convex)
   {
-    const Candidate sides = onSides(b, p);
-    best = sides.Squared < best.Squared ? sides : best;
+    best = searchAll(b, p);
   }
-  for (int corner = 0; twisted && corner < 4; ++corner)
+  else
   {
-    const Candidate c = newton(b, p, corner % 2 ? 0.9 : -0.9, corner / 2 ? 0.9 : -0.9);
-    best = c.Squared < best.Squared ? c : best;
+    // Convex: one stationary point, near that of the plane in the patch's middle. If it lies
+    // outside the square, the nearest point is on a side that it lies beyond.
+    const double ra = r.dot(b.A);
+    const double rb = r.dot(b.B);
+    const double s = (b.BB * ra - b.AB * rb) * b.Inverse;
+    const double t = (b.AA * rb - b.AB * ra) * b.Inverse;
+    if (std::abs(s) < 1.5 && std::abs(t) < 1.5)
+    {
+      best = newton(b, p, s, t);
+    }
+    if (!(best.Squared < std::numeric_limits<double>::infinity()))
+    {
+      // The true stationary point is a little off: take every side that it may lie beyond.
+      const double margin = 0.75;
+      for (int k = 0; k < 4; ++k)
+      {
+        const double out = (k < 2 ? t : s) * (k % 2 ? 1.0 : -1.0);
+        if (out > margin)
+        {
+          onSide(b, p, k, best);
+        }
+      }
+    }
+    if (!(best.Squared < std::numeric_limits<double>::infinity()))
+    {
+      best = searchAll(b, p);
+    }
   }
   QuadHit hit;
   hit.UV = Vec2(0.5 * (best.S + 1.0), 0.5 * (best.T + 1.0));

@@ -41,6 +41,9 @@ private:
     Vec3 C, A, B, D;
     Eigen::Matrix3d Axes; ///< rows: along A, across it, normal
     Vec3 Low, High;       ///< the box along the axes, relative to C
+    double AA, BB, AB;    ///< dot products of A and B
+    double Inverse;       ///< of AA BB - AB AB; 0 for a degenerate patch
+    double Convex;        ///< one stationary point where |(p - C) . D| is below
   };
   static double boxDistance(const Patch& patch, const Vec3& p);
   static QuadHit project(const Patch& patch, const Vec3& p);

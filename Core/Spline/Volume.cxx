@@ -1,0 +1,173 @@
+#include "Spline/Volume.h"
+#include "Common/Parallel.h"
+#include "Spline/Evaluate.h"
+#include "Spline/SampleModel.h"
+#include "Spline/Topology.h"
+
+#include <cmath>
+
+namespace bsr
+{
+namespace
+{
+struct GaussRule
+{
+  std::vector<double> Points; ///< in [0, 1]
+  std::vector<double> Weights;
+};
+
+/// Gauss-Legendre points as roots of the Legendre polynomial by Newton's method.
+GaussRule gaussRule(int n)
+{
+  GaussRule g;
+  for (int i = 0; i < n; ++i)
+  {
+    double x = std::cos(std::acos(-1.0) * (i + 0.75) / (n + 0.5));
+    double slope = 1.0;
+    for (int iteration = 0; iteration < 50; ++iteration)
+    {
+      double p0 = 1.0;
+      double p1 = x;
+      for (int k = 2; k <= n; ++k)
+      {
+        const double p2 = ((2 * k - 1) * x * p1 - (k - 1) * p0) / k;
+        p0 = p1;
+        p1 = p2;
+      }
+      slope = n == 1 ? 1.0 : n * (x * p1 - p0) / (x * x - 1.0);
+      const double step = p1 / slope;
+      x -= step;
+      if (std::abs(step) < 1e-15)
+      {
+        break;
+      }
+    }
+    g.Points.push_back(0.5 * (1.0 - x));
+    g.Weights.push_back(1.0 / ((1.0 - x * x) * slope * slope));
+  }
+  return g;
+}
+
+/// Basis values at the Gauss points of every piece along one direction, with their weights.
+struct Line
+{
+  std::vector<BasisValues> Basis;
+  std::vector<double> Weights;
+};
+
+Line quadratureLine(
+  const SplineModel& model, const SplinePatch& patch, int direction, bool rational)
+{
+  const int degree = direction == 0 ? patch.DegreeU : patch.DegreeV;
+  const int count = direction == 0 ? patch.CountU : patch.CountV;
+  const double* knots = model.Knots.data() + (direction == 0 ? patch.FirstKnotU : patch.FirstKnotV);
+  // x . (Su x Sv) has degree 3 d - 1 in each parameter.
+  const GaussRule g = gaussRule(rational ? 3 * degree + 12 : (3 * degree + 1) / 2);
+  const std::vector<double> ends = pieceEnds(model, patch, direction);
+  Line line;
+  for (std::size_t e = 0; e + 1 < ends.size(); ++e)
+  {
+    const double length = ends[e + 1] - ends[e];
+    for (std::size_t k = 0; k < g.Points.size(); ++k)
+    {
+      line.Basis.push_back(evaluateBasis(knots, degree, count, ends[e] + g.Points[k] * length));
+      line.Weights.push_back(g.Weights[k] * length);
+    }
+  }
+  return line;
+}
+
+bool isRational(const SplineModel& model, const SplinePatch& patch)
+{
+  const Vec4* c = model.ControlPoints.data() + patch.FirstControlPoint;
+  for (std::int64_t i = 1; i < static_cast<std::int64_t>(patch.CountU) * patch.CountV; ++i)
+  {
+    if (c[i][3] != c[0][3])
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// {volume of the cone from `apex`, area} of a patch.
+std::array<double, 2> measurePatch(
+  const SplineModel& model, const SplinePatch& patch, const Vec3& apex)
+{
+  const bool rational = isRational(model, patch);
+  const Line u = quadratureLine(model, patch, 0, rational);
+  const Line v = quadratureLine(model, patch, 1, rational);
+  std::array<double, 2> sum = {0.0, 0.0};
+  for (std::size_t j = 0; j < v.Basis.size(); ++j)
+  {
+    for (std::size_t i = 0; i < u.Basis.size(); ++i)
+    {
+      const SurfacePoint s = evaluatePatch(model, patch, u.Basis[i], v.Basis[j]);
+      const double w = u.Weights[i] * v.Weights[j];
+      sum[0] += w * (s.Point - apex).dot(s.normal()) / 3.0;
+      sum[1] += w * s.normal().norm();
+    }
+  }
+  return sum;
+}
+
+std::vector<std::array<double, 2>> measurePatches(const SplineModel& model)
+{
+  Vec3 apex = Vec3::Zero();
+  for (const Vec4& c : model.ControlPoints)
+  {
+    apex += c.head<3>() / static_cast<double>(model.ControlPoints.size());
+  }
+  const std::vector<char> flip = orientationFlips(model);
+  std::vector<std::array<double, 2>> m(model.Patches.size());
+  parallelFor(0, static_cast<std::int64_t>(m.size()), 4,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t p = begin; p < end; ++p)
+      {
+        m[p] = measurePatch(model, model.Patches[p], apex);
+        m[p][0] *= flip[p] ? -1.0 : 1.0;
+      }
+    });
+  return m;
+}
+} // namespace
+
+std::vector<double> componentVolumes(const SplineModel& model)
+{
+  const auto [component, count] = patchComponents(model);
+  const auto patches = measurePatches(model);
+  std::vector<double> volume(static_cast<std::size_t>(count), 0.0);
+  for (std::size_t p = 0; p < patches.size(); ++p)
+  {
+    volume[component[p]] += patches[p][0];
+  }
+  return volume;
+}
+
+ModelMeasure measureModel(const SplineModel& model)
+{
+  const auto [component, count] = patchComponents(model);
+  const auto open = openSides(model, component, count);
+  const auto patches = measurePatches(model);
+  std::vector<double> volume(static_cast<std::size_t>(count), 0.0);
+  std::vector<char> innerOnly(static_cast<std::size_t>(count), 1);
+  ModelMeasure m;
+  for (std::size_t p = 0; p < patches.size(); ++p)
+  {
+    m.Area += patches[p][1];
+    volume[component[p]] += patches[p][0];
+    innerOnly[component[p]] = innerOnly[component[p]] && model.Patches[p].Side == Shell::Inner;
+  }
+  for (Index c = 0; c < count; ++c)
+  {
+    if (open[c] > 0)
+    {
+      m.Closed = false;
+      continue;
+    }
+    m.Volume += std::abs(volume[c]) * (innerOnly[c] && count > 1 ? -1.0 : 1.0);
+  }
+  return m;
+}
+} // namespace bsr

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "Common/Status.h"
+#include "Spline/SplineModel.h"
+
+namespace bsr
+{
+/// Area and enclosed volume of a model.
+struct ModelMeasure
+{
+  double Area = 0.0;
+  double Volume = 0.0; ///< 0 where an open component encloses none
+  bool Closed = true;  ///< every component is closed
+};
+
+/**
+ * Volume by the divergence theorem on the patches, exact for polynomial patches (Gauss quadrature
+ * of sufficient order), to some 1e-12 relative for rational ones; the area by the same points. A
+ * closed component of inner patches only is a void and is subtracted.
+ * \pre the model is valid (checkModel).
+ */
+ModelMeasure measureModel(const SplineModel& model);
+
+/// Signed volume of each component (patchComponents), by orientationFlips: positive where the
+/// normals point outward. Meaningless for open components.
+std::vector<double> componentVolumes(const SplineModel& model);
+} // namespace bsr
