@@ -1,0 +1,56 @@
+#pragma once
+
+#include "Common/Monitor.h"
+#include "Common/Status.h"
+#include "Image/ImageView.h"
+
+namespace bsr
+{
+/// What findLumen calls a voxel.
+enum class VoidLabel : std::uint8_t
+{
+  Object = 0,  ///< the object
+  Sealed = 1,  ///< pores, cracks and cavities of the object, narrower than about five voxels
+  Outside = 2, ///< the void around the object, its concavities included
+  Lumen = 3,   ///< the void within
+  Mouth = 4    ///< outside, close before an open end of the lumen
+};
+
+struct LumenOptions
+{
+  /// Radius in voxels of the ball that seals holes of the wall; 0: 0.45 of the lumen's radius.
+  double PoreRadius = 0.0;
+};
+
+struct LumenResult
+{
+  bool Found = false;
+  Volume<std::uint8_t> Label; ///< VoidLabel, on the object's extent
+  double LumenRadius = 0.0;   ///< median radius of the balls inscribed in the lumen, in voxels
+  double PoreRadius = 0.0;    ///< the one used, in voxels
+};
+
+/**
+ * Separates the void within a hollow object from the void around it, though they may be connected
+ * by holes, cracks and open ends.
+ *
+ * After pores narrower than 2.5 voxels in radius have been sealed, rays are cast from the void near
+ * and within the object (`near`): the lumen's core is where fewer than 30 % of all directions
+ * escape. Concavities of the outside do not pass (from the bottom of a wide dent some 40 % escape),
+ * holes neither (they are few). Towards its open ends the lumen then grows through voxels that are
+ * still walled in all around in some plane, but only where a ball of PoreRadius passes: not through
+ * holes.
+ *
+ * Both masks cover the same extent, which should be some voxels wider than the object.
+ */
+Result<LumenResult> findLumen(const Volume<std::uint8_t>& object, const Volume<std::uint8_t>& near,
+  const LumenOptions& options, Monitor& monitor);
+
+/// Voxels within `radius` voxels of voxels nonzero in a mask, on its extent.
+Result<Volume<std::uint8_t>> dilated(
+  const Volume<std::uint8_t>& mask, double radius, Monitor& monitor);
+
+/// closeByBall on the mask's own extent.
+Result<Volume<std::uint8_t>> closed(
+  const Volume<std::uint8_t>& mask, double radius, Monitor& monitor);
+} // namespace bsr
