@@ -1,0 +1,121 @@
+#include "vtkEDTClassify.h"
+
+#include "Adapters/BSRClosedImageAdapter.h"
+#include "Adapters/BSRMeshAdapter.h"
+#include "Adapters/BSRMonitor.h"
+#include "Image/FiberSides.h"
+
+#include <vtkFieldData.h>
+#include <vtkFloatArray.h>
+#include <vtkImageData.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkUnsignedCharArray.h>
+
+vtkStandardNewMacro(vtkEDTClassify);
+
+namespace
+{
+bsr::Result<bsr::FiberSides> classify(vtkPolyData* surface, vtkImageData* image,
+  const bsr::FiberSidesOptions& options, bsr::Monitor& monitor)
+{
+  auto mesh = bsr::triangleMeshFrom(surface);
+  if (!mesh)
+  {
+    return mesh.status();
+  }
+  const auto object = bsr::closedObjectFrom(image);
+  if (!object)
+  {
+    return object.status();
+  }
+  bsr::toVoxels(image, mesh->Points);
+  return bsr::classifySides(*mesh, *object, options, monitor);
+}
+
+void attach(const bsr::FiberSides& sides, vtkPolyData* output)
+{
+  const auto n = static_cast<vtkIdType>(sides.Side.size());
+  vtkNew<vtkFloatArray> depth;
+  depth->SetName("Depth");
+  depth->SetNumberOfTuples(n);
+  std::copy(sides.Depth.begin(), sides.Depth.end(), depth->GetPointer(0));
+  vtkNew<vtkUnsignedCharArray> side;
+  side->SetName("Side");
+  side->SetNumberOfTuples(n);
+  std::copy(sides.Side.begin(), sides.Side.end(), side->GetPointer(0));
+  output->GetPointData()->AddArray(depth);
+  output->GetPointData()->AddArray(side);
+  output->GetPointData()->SetActiveScalars("Side");
+  bsr::addField(output->GetFieldData(), "Lumen", sides.Lumen ? 1.0 : 0.0);
+  bsr::addField(output->GetFieldData(), "LumenRadius", sides.LumenRadius);
+  bsr::addField(output->GetFieldData(), "PoreRadius", sides.PoreRadius);
+  bsr::addField(output->GetFieldData(), "DepthThreshold", sides.DepthThreshold);
+}
+} // namespace
+
+vtkEDTClassify::vtkEDTClassify()
+{
+  this->SetNumberOfInputPorts(2);
+}
+
+int vtkEDTClassify::FillInputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkPolyData" : "vtkImageData");
+  return 1;
+}
+
+int vtkEDTClassify::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  this->Superclass::RequestUpdateExtent(request, inputs, outputs);
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  vtkInformation* in = inputs[1]->GetInformationObject(0);
+  if (in && in->Has(Pipeline::WHOLE_EXTENT()))
+  {
+    in->Set(Pipeline::UPDATE_EXTENT(), in->Get(Pipeline::WHOLE_EXTENT()), 6);
+  }
+  return 1;
+}
+
+int vtkEDTClassify::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkPolyData* surface = vtkPolyData::GetData(inputs[0]);
+  vtkImageData* image = vtkImageData::GetData(inputs[1]);
+  vtkPolyData* output = vtkPolyData::GetData(outputs);
+  bsr::FiberSidesOptions options;
+  options.ByDepth = this->Method == DEPTH;
+  options.DepthThreshold = this->DepthThreshold;
+  options.AutoDepthThreshold = this->AutoDepthThreshold;
+  options.PoreRadius = this->PoreRadius;
+  bsr::AlgorithmMonitor monitor(this);
+  const auto sides = classify(surface, image, options, monitor);
+  if (!sides)
+  {
+    output->Initialize();
+    if (sides.status().code() == bsr::StatusCode::Cancelled)
+    {
+      return 1;
+    }
+    vtkErrorMacro(<< sides.status().message());
+    return 0;
+  }
+  output->ShallowCopy(surface);
+  attach(*sides, output);
+  return 1;
+}
+
+void vtkEDTClassify::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Method: " << this->Method << "\n";
+  os << indent << "DepthThreshold: " << this->DepthThreshold << "\n";
+  os << indent << "AutoDepthThreshold: " << this->AutoDepthThreshold << "\n";
+  os << indent << "PoreRadius: " << this->PoreRadius << "\n";
+}
