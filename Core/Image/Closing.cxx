@@ -215,28 +215,41 @@ double ones(const Volume<std::uint8_t>& v)
   return static_cast<double>(std::count(v.Data.get(), v.Data.get() + v.Extent.volume(), 1));
 }
 
-/// The closed voxels and the signed distance for a radius that is decided.
-template <class T>
-Status closeObject(
-  const ImageView<const T>& image, const Object& object, ClosingResult& r, Monitor& monitor)
+/// The closed voxels and their topology: a radius that was searched for brings them along.
+Status closeVoxels(const Object& object, RadiusChoice& choice, double radius, Monitor& monitor)
 {
-  SubMonitor ball(monitor, 0.0, 0.25);
-  SubMonitor topology(monitor, 0.25, 0.35);
-  SubMonitor depth(monitor, 0.35, 0.9);
-  SubMonitor rest(monitor, 0.9, 1.0);
-  auto closed = closeByBall(object.Mask.view(), r.Radius, ball);
+  if (choice.Closed.Data)
+  {
+    return Status::ok();
+  }
+  SubMonitor ball(monitor, 0.0, 0.7);
+  SubMonitor topology(monitor, 0.7, 1.0);
+  auto closed = closeByBall(object.Mask.view(), radius, ball);
   if (!closed)
   {
     return closed.status();
   }
-  closed->Extent = object.Mask.Extent;
-  const auto after = bettiNumbers(closed->view(), Connectivity::TwentySix, topology);
-  if (!after)
+  const auto betti = bettiNumbers(closed->view(), Connectivity::TwentySix, topology);
+  if (!betti)
   {
-    return after.status();
+    return betti.status();
   }
-  r.After = *after;
-  r.VolumeRatio = ones(*closed) / ones(object.Mask);
+  choice.Closed = std::move(*closed);
+  choice.Betti = *betti;
+  choice.Radius = radius;
+  return Status::ok();
+}
+
+/// The signed distance for a radius that is decided.
+template <class T>
+Status measureDepth(const ImageView<const T>& image, const Object& object, RadiusChoice& choice,
+  ClosingResult& r, Monitor& monitor)
+{
+  SubMonitor depth(monitor, 0.0, 0.85);
+  SubMonitor rest(monitor, 0.85, 1.0);
+  choice.Closed.Extent = object.Mask.Extent;
+  r.After = choice.Betti;
+  r.VolumeRatio = ones(choice.Closed) / ones(object.Mask);
   const Box extent = outputExtent(image.Dims, object.Mask.Extent);
   const Volume<float> field = objectField(image, r.IsoValue, object.Mask);
   auto distance = closedDistance(field, r.Radius, extent, depth);
@@ -244,7 +257,8 @@ Status closeObject(
   {
     return distance.status();
   }
-  r.Closed = embed(*closed, extent);
+  r.Closed = embed(choice.Closed, extent);
+  choice.Closed = Volume<std::uint8_t>();
   r.SignedDistance = std::move(*distance);
   const auto changed = removeStrayParts(r.SignedDistance, r.Closed, rest);
   if (!changed)
@@ -273,8 +287,8 @@ Result<ClosingResult> closeImage(
     return valid;
   }
   SubMonitor threshold(monitor, 0.0, 0.05);
-  SubMonitor search(monitor, 0.05, 0.5);
-  SubMonitor finish(monitor, options.AutoRadius ? 0.5 : 0.05, 1.0);
+  SubMonitor search(monitor, 0.05, options.AutoRadius ? 0.5 : 0.25);
+  SubMonitor finish(monitor, options.AutoRadius ? 0.5 : 0.25, 1.0);
   const auto iso = isoValue(image, options, threshold);
   if (!iso)
   {
@@ -306,7 +320,8 @@ Result<ClosingResult> closeImage(
     choice = std::move(*found);
     r.Radius = choice.Radius;
   }
-  const Status done = closeObject(image, *object, r, finish);
+  Status done = closeVoxels(*object, choice, r.Radius, search);
+  done = done ? measureDepth(image, *object, choice, r, finish) : done;
   if (!done)
   {
     return done;

@@ -272,39 +272,30 @@ Result<double> refine(const VolumeSampler& volume, const ClosingCurve& c, std::s
   return high;
 }
 
-Result<BettiNumbers> bettiOfClosing(
-  const Volume<std::uint8_t>& object, double radius, Monitor& monitor)
-{
-  SubMonitor first(monitor, 0.0, 0.6);
-  SubMonitor second(monitor, 0.6, 1.0);
-  const auto closed = closeByBall(object.view(), radius, first);
-  if (!closed)
-  {
-    return closed.status();
-  }
-  return bettiNumbers(closed->view(), Connectivity::TwentySix, second);
-}
-
 /// Of some radii, in their order: the first that gives a ball, else the one with the fewest holes.
 Status chooseByTopology(const Volume<std::uint8_t>& object, const std::vector<double>& candidates,
   RadiusChoice& choice, Monitor& monitor)
 {
   const auto holes = [](const BettiNumbers& b) { return b.Components + b.Tunnels + b.Cavities; };
-  bool any = false;
   for (std::size_t i = 0; i < candidates.size(); ++i)
   {
     const double n = static_cast<double>(candidates.size());
     SubMonitor part(monitor, static_cast<double>(i) / n, static_cast<double>(i + 1) / n);
-    const auto betti = bettiOfClosing(object, candidates[i], part);
+    auto closed = closeByBall(object.view(), candidates[i], part);
+    if (!closed)
+    {
+      return closed.status();
+    }
+    const auto betti = bettiNumbers(closed->view(), Connectivity::TwentySix, part);
     if (!betti)
     {
       return betti.status();
     }
-    if (!any || holes(*betti) < holes(choice.Betti))
+    if (!choice.Closed.Data || holes(*betti) < holes(choice.Betti))
     {
       choice.Radius = candidates[i];
       choice.Betti = *betti;
-      any = true;
+      choice.Closed = std::move(*closed);
     }
     if (betti->isBall())
     {

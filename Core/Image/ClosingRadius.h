@@ -30,6 +30,7 @@ struct RadiusChoice
   double Rise = 0.0;    ///< steepest d ln(volume) / d ln(radius)
   BettiNumbers Betti;   ///< of the object closed with Radius
   ClosingCurve Curve;
+  Volume<std::uint8_t> Closed; ///< the object closed with Radius (closeByBall)
 };
 
 /**

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "Image/HugePages.h"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -81,6 +83,7 @@ struct Volume
   Volume(const Box& extent, const Double3& spacing)
       : Extent(extent), Spacing(spacing), Data(new T[static_cast<std::size_t>(extent.volume())])
   {
+    adviseHugePages(this->Data.get(), static_cast<std::size_t>(extent.volume()) * sizeof(T));
   }
   ImageView<T> view() { return {this->Data.get(), this->Extent.Size, this->Spacing}; }
   ImageView<const T> view() const { return {this->Data.get(), this->Extent.Size, this->Spacing}; }
