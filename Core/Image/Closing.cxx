@@ -258,7 +258,7 @@ Status measureDepth(const ImageView<const T>& image, const Object& object, Radiu
     return distance.status();
   }
   r.Closed = embed(choice.Closed, extent);
-  choice.Closed = Volume<std::uint8_t>();
+  choice.Closed = Volume<std::uint8_t>(); // the next attempt closes anew
   r.SignedDistance = std::move(*distance);
   const auto changed = removeStrayParts(r.SignedDistance, r.Closed, rest);
   if (!changed)
@@ -320,11 +320,21 @@ Result<ClosingResult> closeImage(
     choice = std::move(*found);
     r.Radius = choice.Radius;
   }
-  Status done = closeVoxels(*object, choice, r.Radius, search);
-  done = done ? measureDepth(image, *object, choice, r, finish) : done;
-  if (!done)
+  // A radius at which a gap just closes may close it for voxels but not for real distances, or the
+  // other way: then a little more settles it.
+  for (int attempt = 0; attempt < 4; ++attempt)
   {
-    return done;
+    Status done = closeVoxels(*object, choice, r.Radius, search);
+    done = done ? measureDepth(image, *object, choice, r, finish) : done;
+    if (!done)
+    {
+      return done;
+    }
+    if (!options.AutoRadius || !r.After.isBall() || r.Surface.isBall())
+    {
+      break;
+    }
+    r.Radius *= 1.05;
   }
   r.Warning = warningFor(options, r, choice);
   r.Curve = std::move(choice.Curve);
