@@ -5,6 +5,7 @@
 #include "Spline/Topology.h"
 
 #include <cmath>
+#include <tuple>
 
 namespace bsr
 {
@@ -145,28 +146,94 @@ std::vector<double> componentVolumes(const SplineModel& model)
   return volume;
 }
 
-ModelMeasure measureModel(const SplineModel& model)
+namespace
 {
-  const auto [component, count] = patchComponents(model);
-  const auto open = openSides(model, component, count);
-  const auto patches = measurePatches(model);
-  std::vector<double> volume(static_cast<std::size_t>(count), 0.0);
-  std::vector<char> innerOnly(static_cast<std::size_t>(count), 1);
-  ModelMeasure m;
-  for (std::size_t p = 0; p < patches.size(); ++p)
+/// Winding number of the sampled polygons of component `c` about p.
+double windingNumber(
+  const SampledModel& mesh, const std::vector<Index>& component, Index c, const Vec3& p)
+{
+  double angle = 0.0;
+  for (std::size_t i = 0; i < mesh.Polygons.size(); ++i)
   {
-    m.Area += patches[p][1];
-    volume[component[p]] += patches[p][0];
-    innerOnly[component[p]] = innerOnly[component[p]] && model.Patches[p].Side == Shell::Inner;
+    if (component[mesh.PatchId[i]] != c)
+    {
+      continue;
+    }
+    const auto& q = mesh.Polygons[i];
+    for (int k = 1; k + 1 < (q[3] < 0 ? 3 : 4); ++k)
+    {
+      // Solid angle of a triangle (van Oosterom and Strackee, 1983).
+      const Vec3 a = mesh.Points[q[0]] - p;
+      const Vec3 b = mesh.Points[q[k]] - p;
+      const Vec3 d = mesh.Points[q[k + 1]] - p;
+      const double la = a.norm();
+      const double lb = b.norm();
+      const double ld = d.norm();
+      angle += 2.0 * std::atan2(a.dot(b.cross(d)),
+                       la * lb * ld + a.dot(b) * ld + b.dot(d) * la + d.dot(a) * lb);
+    }
+  }
+  return angle / (4.0 * std::acos(-1.0));
+}
+} // namespace
+
+Nesting findNesting(const SplineModel& model)
+{
+  Nesting n;
+  Index count = 0;
+  std::tie(n.Component, count) = patchComponents(model);
+  const auto open = openSides(model, n.Component, count);
+  n.Volume = componentVolumes(model);
+  n.Depth.assign(static_cast<std::size_t>(count), 0);
+  n.Parent.assign(static_cast<std::size_t>(count), -1);
+  std::vector<Vec3> member(static_cast<std::size_t>(count));
+  for (std::size_t p = model.Patches.size(); p-- > 0;)
+  {
+    member[n.Component[p]] = model.ControlPoints[model.Patches[p].FirstControlPoint].head<3>();
   }
   for (Index c = 0; c < count; ++c)
   {
-    if (open[c] > 0)
+    n.Closed.push_back(open[c] == 0);
+  }
+  if (count < 2)
+  {
+    return n;
+  }
+  Monitor monitor;
+  const Result<SampledModel> mesh = sampleModel(model, SampleOptions{}, monitor);
+  for (Index c = 0; mesh.isOk() && c < count; ++c)
+  {
+    for (Index d = 0; d < count; ++d)
     {
-      m.Closed = false;
-      continue;
+      if (d == c || !n.Closed[d] || std::abs(windingNumber(*mesh, n.Component, d, member[c])) < 0.5)
+      {
+        continue;
+      }
+      ++n.Depth[c];
+      if (n.Parent[c] < 0 || std::abs(n.Volume[d]) < std::abs(n.Volume[n.Parent[c]]))
+      {
+        n.Parent[c] = d;
+      }
     }
-    m.Volume += std::abs(volume[c]) * (innerOnly[c] && count > 1 ? -1.0 : 1.0);
+  }
+  return n;
+}
+
+ModelMeasure measureModel(const SplineModel& model)
+{
+  ModelMeasure m;
+  for (const auto& patch : measurePatches(model))
+  {
+    m.Area += patch[1];
+  }
+  const Nesting n = findNesting(model);
+  for (std::size_t c = 0; c < n.Closed.size(); ++c)
+  {
+    if (n.Closed[c])
+    {
+      m.Volume += std::abs(n.Volume[c]) * (n.Depth[c] % 2 ? -1.0 : 1.0);
+    }
+    m.Closed = m.Closed && n.Closed[c];
   }
   return m;
 }
