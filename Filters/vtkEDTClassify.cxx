@@ -5,6 +5,7 @@
 #include "Adapters/BSRMonitor.h"
 #include "Image/FiberSides.h"
 
+#include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>
@@ -16,6 +17,8 @@
 #include <vtkPolyData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
 
 vtkStandardNewMacro(vtkEDTClassify);
 
@@ -36,6 +39,29 @@ bsr::Result<bsr::FiberSides> classify(vtkPolyData* surface, vtkImageData* image,
   }
   bsr::toVoxels(image, mesh->Points);
   return bsr::classifySides(*mesh, *object, options, monitor);
+}
+
+/// One tuple (center, direction, radius) in world units for each open end of the lumen.
+void attachMouths(
+  const std::vector<bsr::LumenMouth>& mouths, vtkImageData* image, vtkFieldData* field)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName("LumenMouths");
+  array->SetNumberOfComponents(7);
+  const double* const h = image->GetSpacing();
+  const double unit = std::min({h[0], h[1], h[2]});
+  for (const bsr::LumenMouth& m : mouths)
+  {
+    const bsr::Vec3 step = m.Direction.cwiseQuotient(bsr::Vec3(h[0], h[1], h[2]));
+    std::vector<bsr::Vec3> ends{m.Center, m.Center + step};
+    bsr::fromVoxels(image, ends);
+    const bsr::Vec3 direction = (ends[1] - ends[0]).normalized();
+    const bsr::Vec3& c = ends[0];
+    const double tuple[7] = {
+      c.x(), c.y(), c.z(), direction.x(), direction.y(), direction.z(), m.Radius * unit};
+    array->InsertNextTuple(tuple);
+  }
+  field->AddArray(array);
 }
 
 void attach(const bsr::FiberSides& sides, vtkPolyData* output)
@@ -108,6 +134,7 @@ int vtkEDTClassify::RequestData(
   }
   output->ShallowCopy(surface);
   attach(*sides, output);
+  attachMouths(sides->Mouths, image, output->GetFieldData());
   return 1;
 }
 

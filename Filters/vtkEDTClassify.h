@@ -26,7 +26,9 @@
  *
  * Field data: `Lumen` (1 when a lumen was found, else 0 and no point is 1), `LumenRadius` (median
  * radius of the inscribed balls, voxels), `PoreRadius` (voxels, the one used), `DepthThreshold`
- * (voxels, the one used by the method Depth).
+ * (voxels, the one used by the method Depth), `LumenMouths` (Float64, 7 components, a tuple for
+ * each open end of the lumen: center, direction outwards, radius, in world units; from Facing Void
+ * only; vtkFiberEnds uses it).
  *
  * @warning The walls of Facing Void follow features wider than some 5 voxels; a lumen narrower than
  * 3.5 voxels in radius is not found.

@@ -17,11 +17,11 @@ using Mask = Volume<std::uint8_t>;
 
 constexpr double OuterSigma = 4.5; ///< voxels: of the smooth walls
 constexpr double InnerSigma = 3.0;
-constexpr double OuterTolerance = 1.7; ///< voxels from the smooth outer wall
+constexpr double OuterTolerance = 1.7;  ///< voxels from the smooth outer wall
 constexpr double InnerTolerance = 1.15; ///< voxels from the smooth inner wall
-constexpr double SmallOpening = 2.5;   ///< voxels: what of the lumen is narrower is not wall
-constexpr double Margin = 12.0;        ///< voxels around the closed object
-constexpr double NearObject = 3.0;     ///< voxels around it where the void is looked at
+constexpr double SmallOpening = 2.5;    ///< voxels: what of the lumen is narrower is not wall
+constexpr double Margin = 12.0;         ///< voxels around the closed object
+constexpr double NearObject = 3.0;      ///< voxels around it where the void is looked at
 
 /// Parts (26) of the object smaller than this share of the largest are debris.
 constexpr double DebrisShare = 0.1;
@@ -237,6 +237,11 @@ Status sidesByVoid(const TriangleMesh& surface, const ClosedObject& object,
   sides.PoreRadius = lumen->PoreRadius;
   const Vec3 shift(
     static_cast<double>(box.Lo[0]), static_cast<double>(box.Lo[1]), static_cast<double>(box.Lo[2]));
+  sides.Mouths = lumen->Mouths;
+  for (LumenMouth& m : sides.Mouths)
+  {
+    m.Center += shift;
+  }
   std::vector<Vec3> points(surface.Points.size());
   std::transform(surface.Points.begin(), surface.Points.end(), points.begin(),
     [&](const Vec3& p) { return Vec3(p - shift); });

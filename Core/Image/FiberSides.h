@@ -3,6 +3,7 @@
 #include "Common/Monitor.h"
 #include "Common/Status.h"
 #include "Image/ImageView.h"
+#include "Image/Lumen.h"
 #include "Mesh/Meshes.h"
 
 namespace bsr
@@ -33,6 +34,8 @@ struct FiberSides
   double LumenRadius = 0.0;       ///< voxels; 0 without a lumen
   double PoreRadius = 0.0;        ///< voxels, the one used
   double DepthThreshold = 0.0;    ///< voxels, the one used or what the histogram says
+  /// Open ends of the lumen (centers in voxel indices of the closed image); not by depth.
+  std::vector<LumenMouth> Mouths;
 };
 
 /// The closed object: distance to its surface, negative inside, in voxels.

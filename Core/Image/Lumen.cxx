@@ -20,6 +20,8 @@ constexpr std::uint8_t DeepOpen = 31;  ///< 0.12
 constexpr std::uint8_t GrowOpen = 127; ///< 0.5
 constexpr std::uint8_t GrowRing = 25;  ///< 0.1
 constexpr double SmallestLumen = 3.5;  ///< voxels
+constexpr double SmallestMouth = 0.6;  ///< of the lumen's radius
+constexpr double MouthDepth = 10.0;    ///< voxels
 
 template <class Predicate>
 Mask maskWhere(const Mask& like, const Predicate& predicate)
@@ -186,29 +188,95 @@ Status grow(Mask& lumen, const Mask& wideSolid, const Mask& near, const Visibili
   return Status::ok();
 }
 
-/// Outside voxels within `depth` voxels of an open end of the lumen.
-Result<Mask> mouths(const Mask& lumen, const Mask& solid, double depth, Monitor& monitor)
+/// Calls f(voxel, neighbor, axis, direction) where a voxel of the lumen touches one of the outside.
+template <class F>
+void eachMouthFace(const Mask& lumen, const Mask& solid, const F& f)
 {
-  const auto l = lumen.view();
-  const auto s = solid.view();
   const Int3& n = lumen.Extent.Size;
-  Mask faces = maskWhere(lumen, [](std::int64_t) { return false; });
-  const auto f = faces.view();
+  const Int3 stride{1, n[0], n[0] * n[1]};
+  const auto inner = [&](std::int64_t i) { return lumen.Data[i] && !solid.Data[i]; };
+  const auto outer = [&](std::int64_t i) { return !lumen.Data[i] && !solid.Data[i]; };
   for (std::int64_t k = 1; k + 1 < n[2]; ++k)
   {
     for (std::int64_t j = 1; j + 1 < n[1]; ++j)
     {
       for (std::int64_t i = 1; i + 1 < n[0]; ++i)
       {
-        const auto inner = [&](std::int64_t x, std::int64_t y, std::int64_t z)
-        { return l(x, y, z) && !s(x, y, z); };
-        f(i, j, k) = !l(i, j, k) && !s(i, j, k) &&
-                     (inner(i - 1, j, k) || inner(i + 1, j, k) || inner(i, j - 1, k) ||
-                       inner(i, j + 1, k) || inner(i, j, k - 1) || inner(i, j, k + 1));
+        const std::int64_t at = lumen.view().index(i, j, k);
+        for (int s = 0; s < 6 && inner(at); ++s)
+        {
+          const int way = s < 3 ? 1 : -1;
+          const std::int64_t next = at + way * stride[s % 3];
+          if (outer(next))
+          {
+            f(Int3{i, j, k}, next, s % 3, way);
+          }
+        }
       }
     }
   }
-  return dilated(faces, depth, monitor);
+}
+
+/// Outside voxels that touch the lumen at its open ends.
+Mask mouthFaces(const Mask& lumen, const Mask& solid)
+{
+  Mask faces = maskWhere(lumen, [](std::int64_t) { return false; });
+  eachMouthFace(
+    lumen, solid, [&](const Int3&, std::int64_t next, int, int) { faces.Data[next] = 1; });
+  return faces;
+}
+
+/// The open ends: parts of the interface of lumen and outside, by their vector area.
+Result<std::vector<LumenMouth>> findMouths(
+  const Mask& lumen, const Mask& solid, const Mask& faces, double smallest, Monitor& monitor)
+{
+  const auto wider = dilated(faces, 2.0, monitor);
+  if (!wider)
+  {
+    return wider.status();
+  }
+  const auto parts = connectedComponents(wider->view(), true, Connectivity::TwentySix, monitor);
+  if (!parts)
+  {
+    return parts.status();
+  }
+  std::vector<std::int32_t> part(static_cast<std::size_t>(lumen.Extent.volume()), -1);
+  for (const LabeledRun& run : parts->Runs)
+  {
+    eachVoxel(run, lumen.Extent.Size[0],
+      [&](std::int64_t i) { part[i] = static_cast<std::int32_t>(run.Label); });
+  }
+  struct Sum
+  {
+    Vec3 Area = Vec3::Zero();
+    Vec3 Center = Vec3::Zero();
+    double Weight = 0.0;
+  };
+  std::vector<Sum> sums(parts->Voxels.size());
+  const Double3& h = lumen.Spacing;
+  const double unit = voxelLength(h);
+  eachMouthFace(lumen, solid,
+    [&](const Int3& at, std::int64_t next, int axis, int way)
+    {
+      Sum& sum = sums[part[next]];
+      const double area = h[(axis + 1) % 3] * h[(axis + 2) % 3] / (unit * unit);
+      Vec3 p(static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2]));
+      p[axis] += 0.5 * way;
+      sum.Area[axis] += way * area;
+      sum.Center += area * p;
+      sum.Weight += area;
+    });
+  std::vector<LumenMouth> mouths;
+  for (const Sum& sum : sums)
+  {
+    const double area = sum.Area.norm();
+    const double radius = std::sqrt(area / 3.14159265358979323846);
+    if (area > 0.0 && radius >= smallest)
+    {
+      mouths.push_back({sum.Center / sum.Weight, sum.Area / area, radius});
+    }
+  }
+  return mouths;
 }
 } // namespace
 
@@ -300,7 +368,14 @@ Result<LumenResult> findLumen(
     {
       return grown;
     }
-    auto before = mouths(lumen, *wideSolid, 10.0, growing);
+    const Mask faces = mouthFaces(lumen, *wideSolid);
+    auto found = findMouths(lumen, *wideSolid, faces, SmallestMouth * result.LumenRadius, growing);
+    if (!found)
+    {
+      return found.status();
+    }
+    result.Mouths = std::move(*found);
+    auto before = dilated(faces, MouthDepth, growing);
     if (!before)
     {
       return before.status();

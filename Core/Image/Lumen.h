@@ -2,6 +2,7 @@
 
 #include "Common/Monitor.h"
 #include "Common/Status.h"
+#include "Common/Types.h"
 #include "Image/ImageView.h"
 
 namespace bsr
@@ -22,12 +23,21 @@ struct LumenOptions
   double PoreRadius = 0.0;
 };
 
+/// An open end of the lumen: where it meets the outside and the sealing ball passes.
+struct LumenMouth
+{
+  Vec3 Center;         ///< voxel indices of the label image (0 is its first voxel)
+  Vec3 Direction;      ///< unit vector out of the lumen, along the axes of the image
+  double Radius = 0.0; ///< of the disc of the same area, in voxels
+};
+
 struct LumenResult
 {
   bool Found = false;
-  Volume<std::uint8_t> Label; ///< VoidLabel, on the object's extent
-  double LumenRadius = 0.0;   ///< median radius of the balls inscribed in the lumen, in voxels
-  double PoreRadius = 0.0;    ///< the one used, in voxels
+  Volume<std::uint8_t> Label;     ///< VoidLabel, on the object's extent
+  double LumenRadius = 0.0;       ///< median radius of the balls inscribed in the lumen, in voxels
+  double PoreRadius = 0.0;        ///< the one used, in voxels
+  std::vector<LumenMouth> Mouths; ///< those at least 0.6 as wide as the lumen
 };
 
 /**

@@ -1,0 +1,380 @@
+#include "Mesh/FiberEnds.h"
+
+#include "Mesh/RegionCut.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace bsr
+{
+namespace
+{
+constexpr int Bins = 72;             ///< directions around the axis
+constexpr double WindowHeight = 1.0; ///< of the mouth's radius, up and down the axis
+constexpr double WindowRadius = 2.6; ///< of the mouth's radius
+constexpr double MostTilt = 0.7;     ///< cosine between mouth and rim plane at least
+constexpr double Snap = 0.2;         ///< of an edge
+constexpr double Pi = 3.14159265358979323846;
+
+/// Cylinder coordinates around the axis of a mouth.
+struct Frame
+{
+  Vec3 Center;
+  Vec3 Axis;
+  Vec3 U;
+  Vec3 V;
+
+  Frame(const Vec3& center, const Vec3& axis) : Center(center), Axis(axis.normalized())
+  {
+    this->U = this->Axis.unitOrthogonal();
+    this->V = this->Axis.cross(this->U);
+  }
+  double height(const Vec3& p) const { return (p - this->Center).dot(this->Axis); }
+  double radius(const Vec3& p) const
+  {
+    const Vec3 d = p - this->Center;
+    return (d - d.dot(this->Axis) * this->Axis).norm();
+  }
+  /// Angle in bins, 0..Bins.
+  double bin(const Vec3& p) const
+  {
+    const Vec3 d = p - this->Center;
+    const double a = std::atan2(d.dot(this->V), d.dot(this->U)) / (2.0 * Pi) * Bins;
+    return a < 0.0 ? a + Bins : a;
+  }
+  Vec3 radial(double bin) const
+  {
+    const double a = bin / Bins * 2.0 * Pi;
+    return std::cos(a) * this->U + std::sin(a) * this->V;
+  }
+};
+
+using Profile = std::array<double, Bins>;
+
+template <class T>
+const T& ring(const std::array<T, Bins>& values, int i)
+{
+  return values[((i % Bins) + Bins) % Bins];
+}
+
+/// Median of five, then a narrow bell.
+Profile smoothed(const Profile& p)
+{
+  Profile median{};
+  for (int i = 0; i < Bins; ++i)
+  {
+    std::array<double, 5> w{ring(p, i - 2), ring(p, i - 1), p[i], ring(p, i + 1), ring(p, i + 2)};
+    std::sort(w.begin(), w.end());
+    median[i] = w[2];
+  }
+  Profile out{};
+  for (int i = 0; i < Bins; ++i)
+  {
+    out[i] = (6.0 * median[i] + 4.0 * (ring(median, i - 1) + ring(median, i + 1)) +
+               ring(median, i - 2) + ring(median, i + 2)) /
+             16.0;
+  }
+  return out;
+}
+
+/// The rim in a frame: for each direction its radius and height.
+struct Rim
+{
+  Profile Radius{};
+  Profile Height{};
+
+  Vec3 point(const Frame& f, int i) const
+  {
+    return f.Center + this->Radius[i] * f.radial(i + 0.5) + this->Height[i] * f.Axis;
+  }
+  /// Radius minus height of the rim, between the directions.
+  double offset(double bin) const
+  {
+    const double x = bin - 0.5;
+    const int i = static_cast<int>(std::floor(x));
+    const double t = x - i;
+    const auto at = [this](int k) { return ring(this->Radius, k) - ring(this->Height, k); };
+    return (1.0 - t) * at(i) + t * at(i + 1);
+  }
+};
+
+/// The outermost points under 45 degrees; nothing when directions are missing.
+std::optional<Rim> searchRim(const TriangleMesh& mesh, const Frame& frame, double radius)
+{
+  Profile best;
+  best.fill(-std::numeric_limits<double>::infinity());
+  Rim rim;
+  const double reach = std::hypot(WindowHeight, WindowRadius) * radius;
+  for (const Vec3& p : mesh.Points)
+  {
+    if ((p - frame.Center).squaredNorm() > reach * reach)
+    {
+      continue;
+    }
+    const double h = frame.height(p);
+    const double r = frame.radius(p);
+    if (std::abs(h) > WindowHeight * radius || r > WindowRadius * radius)
+    {
+      continue;
+    }
+    const int b = std::min(static_cast<int>(frame.bin(p)), Bins - 1);
+    if (r + h > best[b])
+    {
+      best[b] = r + h;
+      rim.Radius[b] = r;
+      rim.Height[b] = h;
+    }
+  }
+  for (int b = 0; b < Bins; ++b)
+  {
+    if (!std::isfinite(best[b]))
+    {
+      if (!std::isfinite(ring(best, b - 1)))
+      {
+        return std::nullopt;
+      }
+      rim.Radius[b] = ring(rim.Radius, b - 1);
+      rim.Height[b] = ring(rim.Height, b - 1);
+    }
+  }
+  rim.Radius = smoothed(rim.Radius);
+  rim.Height = smoothed(rim.Height);
+  return rim;
+}
+
+/// The frame of the plane through a rim.
+Frame planeOf(const Rim& rim, const Frame& frame)
+{
+  Vec3 center = Vec3::Zero();
+  for (int i = 0; i < Bins; ++i)
+  {
+    center += rim.point(frame, i) / Bins;
+  }
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < Bins; ++i)
+  {
+    const Vec3 d = rim.point(frame, i) - center;
+    covariance += d * d.transpose();
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+  Vec3 axis = solver.eigenvectors().col(0);
+  if (axis.dot(frame.Axis) < 0.0)
+  {
+    axis = -axis;
+  }
+  return {center, axis};
+}
+
+/// Vertices reachable from `seed` over edges between vertices for which inside() holds.
+template <class Inside>
+std::vector<char> connected(
+  const std::vector<std::vector<Index>>& neighbors, Index seed, const Inside& inside)
+{
+  std::vector<char> reached(neighbors.size(), 0);
+  std::vector<Index> stack{seed};
+  reached[seed] = 1;
+  while (!stack.empty())
+  {
+    const Index v = stack.back();
+    stack.pop_back();
+    for (const Index w : neighbors[v])
+    {
+      if (!reached[w] && inside(w))
+      {
+        reached[w] = 1;
+        stack.push_back(w);
+      }
+    }
+  }
+  return reached;
+}
+
+std::vector<std::vector<Index>> neighborsOf(const TriangleMesh& mesh)
+{
+  std::vector<std::vector<Index>> neighbors(mesh.Points.size());
+  for (const auto& t : mesh.Triangles)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      neighbors[t[c]].push_back(t[(c + 1) % 3]);
+    }
+  }
+  return neighbors;
+}
+
+/// Vertex of the cap: the nearest to the axis, not far below or above the mouth.
+Index capVertex(const TriangleMesh& mesh, const Frame& frame, double radius)
+{
+  Index best = -1;
+  double nearest = 0.3 * radius;
+  double highest = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < mesh.Points.size(); ++i)
+  {
+    const double h = frame.height(mesh.Points[i]);
+    const double r = frame.radius(mesh.Points[i]);
+    if (std::abs(h) < 2.0 * radius && r < nearest && h > highest)
+    {
+      highest = h;
+      best = static_cast<Index>(i);
+    }
+  }
+  return best;
+}
+
+/// The function whose zero level is the rim: made positive in one connected part without holes.
+std::optional<std::vector<double>> endFunction(
+  const TriangleMesh& mesh, const Frame& frame, const Rim& rim, double radius)
+{
+  const auto neighbors = neighborsOf(mesh);
+  double widest = 0.0;
+  for (const double r : rim.Radius)
+  {
+    widest = std::max(widest, r);
+  }
+  std::vector<double> value(mesh.Points.size());
+  for (std::size_t i = 0; i < value.size(); ++i)
+  {
+    const Vec3& p = mesh.Points[i];
+    const double f = frame.height(p) - frame.radius(p) + rim.offset(frame.bin(p));
+    const bool far = (p - frame.Center).norm() > 2.0 * widest;
+    value[i] = far ? -std::max(std::abs(f), 1e-9 * radius) : (f == 0.0 ? 1e-9 * radius : f);
+  }
+  const Index seed = capVertex(mesh, frame, radius);
+  if (seed < 0 || value[seed] <= 0.0)
+  {
+    return std::nullopt;
+  }
+  const auto end = connected(neighbors, seed, [&](Index v) { return value[v] > 0.0; });
+  Index outside = -1;
+  double lowest = 0.0;
+  for (std::size_t i = 0; i < value.size(); ++i)
+  {
+    if (!end[i])
+    {
+      value[i] = -std::abs(value[i]);
+      if (value[i] < lowest)
+      {
+        lowest = value[i];
+        outside = static_cast<Index>(i);
+      }
+    }
+  }
+  if (outside < 0)
+  {
+    return std::nullopt;
+  }
+  const auto body = connected(neighbors, outside, [&](Index v) { return value[v] < 0.0; });
+  for (std::size_t i = 0; i < value.size(); ++i)
+  {
+    if (!end[i] && !body[i])
+    {
+      value[i] = 1e-3 * radius;
+    }
+  }
+  return value;
+}
+
+/// Marks triangles on the positive side of the cut with a region; false where another has them.
+bool mark(TriangleMesh& mesh, const std::vector<double>& value, Index region)
+{
+  for (std::size_t t = 0; t < mesh.Triangles.size(); ++t)
+  {
+    double sum = 0.0;
+    for (const Index v : mesh.Triangles[t])
+    {
+      sum += value[v];
+    }
+    if (sum > 0.0)
+    {
+      if (mesh.Region[t] != 0)
+      {
+        return false;
+      }
+      mesh.Region[t] = region;
+    }
+  }
+  return true;
+}
+
+/// Tries to cut one end; says why not.
+std::string cutEnd(FiberEnds& ends, const EndMouth& mouth)
+{
+  if (!(mouth.Radius > 0.0) || !(mouth.Direction.norm() > 0.0) || !mouth.Center.allFinite())
+  {
+    return "its radius or direction is not valid";
+  }
+  Frame frame(mouth.Center, mouth.Direction);
+  std::optional<Rim> rim;
+  for (int round = 0; round < 4; ++round)
+  {
+    rim = searchRim(ends.Surface, frame, mouth.Radius);
+    if (!rim)
+    {
+      return "the surface does not go round it";
+    }
+    if (round < 3)
+    {
+      const Frame plane = planeOf(*rim, frame);
+      if (plane.Axis.dot(mouth.Direction.normalized()) < MostTilt)
+      {
+        break;
+      }
+      frame = plane;
+    }
+  }
+  auto value = endFunction(ends.Surface, frame, *rim, mouth.Radius);
+  if (!value)
+  {
+    return "no cap lies over it";
+  }
+  TriangleMesh cut = ends.Surface;
+  cutAtZero(cut, *value, Snap);
+  const auto region = static_cast<Index>(ends.Rims.size() + 1);
+  if (!mark(cut, *value, region))
+  {
+    return "it overlaps another end";
+  }
+  auto loops = regionLoops(cut, region);
+  if (loops.size() != 1 || regionEuler(cut, region) != 1)
+  {
+    return "its region is not a disc";
+  }
+  ends.Surface = std::move(cut);
+  ends.Rims.push_back(std::move(loops.front()));
+  return {};
+}
+} // namespace
+
+Result<FiberEnds> findFiberEnds(
+  const TriangleMesh& closedSurface, const std::vector<EndMouth>& mouths, Monitor& monitor)
+{
+  if (closedSurface.Triangles.empty())
+  {
+    return Status::invalidInput("The closed surface has no triangles. Contour SignedDistance of "
+                                "the Closing filter's output at 0.");
+  }
+  FiberEnds ends;
+  ends.Surface = closedSurface;
+  ends.Surface.Region.assign(closedSurface.Triangles.size(), 0);
+  for (std::size_t m = 0; m < mouths.size(); ++m)
+  {
+    if (monitor.cancelled())
+    {
+      return Status::cancelled();
+    }
+    const std::string why = cutEnd(ends, mouths[m]);
+    if (!why.empty())
+    {
+      ends.Note += (ends.Note.empty() ? "Mouth " : " Mouth ") + std::to_string(m + 1) +
+                   " of the lumen was not made an end: " + why + ".";
+    }
+    monitor.progress(static_cast<double>(m + 1) / static_cast<double>(mouths.size()));
+  }
+  return ends;
+}
+} // namespace bsr
