@@ -3,10 +3,11 @@
  * @brief Closes a gray-value object in an image by a ball of any radius.
  *
  * The first stage from a CT volume to a B-spline model: the object is what lies at or above an iso
- * value (by default Otsu's threshold), of it the largest component (connectivity 26). It is closed
- * by a ball: dilated and then eroded. With a radius as large as the object's lumen is wide, holes,
- * pits and the lumen itself fill, and what is left is a solid whose surface is the fiber's outer
- * wall with caps over its open ends (Mosbach et al., section 3).
+ * value (by default Otsu's threshold, moved halfway between the two materials), of it the largest
+ * component (connectivity 26). It is closed by a ball: dilated and then eroded. With a radius as
+ * large as the object's lumen is wide, holes, pits and the lumen itself fill, and what is left is a
+ * solid whose surface is the fiber's outer wall with caps over its open ends (Mosbach et al.,
+ * section 3).
  *
  * The radius is in voxels (multiples of the smallest spacing); anisotropic spacing is honored: the
  * ball is round in world units. The time does not depend on the radius, as two exact Euclidean
@@ -63,7 +64,8 @@ public:
   ///@}
 
   ///@{
-  /// Take Otsu's threshold as iso value. Default on.
+  /// Find the iso value: Otsu's threshold, moved halfway between the mean gray values of the voxels
+  /// inside the object and outside of it, where the surface of a blurred edge lies. Default on.
   vtkSetMacro(AutoIsoValue, bool);
   vtkGetMacro(AutoIsoValue, bool);
   vtkBooleanMacro(AutoIsoValue, bool);

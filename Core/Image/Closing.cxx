@@ -71,7 +71,8 @@ Result<double> isoValue(const ImageView<const T>& image, const ClosingOptions& o
   const ValueRange range = valueRange(image);
   if (o.AutoIsoValue || range.NotFinite > 0 || !(range.Max > range.Min))
   {
-    return otsuThreshold(image, monitor); // which also says what is wrong with such an image
+    const auto otsu = otsuThreshold(image, monitor); // also says what is wrong with such an image
+    return otsu ? halfwayThreshold(image, *otsu, monitor) : otsu;
   }
   if (o.IsoValue > range.Max || o.IsoValue <= range.Min)
   {

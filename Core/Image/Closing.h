@@ -10,7 +10,7 @@ namespace bsr
 {
 struct ClosingOptions
 {
-  bool AutoIsoValue = true; ///< Otsu's threshold instead of IsoValue
+  bool AutoIsoValue = true; ///< halfwayThreshold of Otsu's threshold instead of IsoValue
   double IsoValue = 0.0;    ///< the object is what lies at or above it
   bool AutoRadius = true;   ///< closingRadius() instead of Radius
   double Radius = 5.0;      ///< of the ball, in voxels (multiples of the smallest spacing)

@@ -94,6 +94,55 @@ double bestBorder(const Histogram& h)
   }
   return h.First + h.Width * (0.5 * (first + last) + 0.5);
 }
+
+/// Sums over the voxels of both classes that have only neighbors of their own class.
+struct InnerSums
+{
+  std::array<double, 2> Sum{{0.0, 0.0}};
+  std::array<double, 2> Inner{{0.0, 0.0}};
+  std::array<double, 2> All{{0.0, 0.0}};
+};
+
+template <class T>
+InnerSums innerSums(const ImageView<const T>& image, const Volume<std::uint8_t>& mask)
+{
+  const Int3& n = image.Dims;
+  const ImageView<const std::uint8_t> m = mask.view();
+  const auto rowSums = [&](std::int64_t begin, std::int64_t end)
+  {
+    InnerSums s;
+    for (std::int64_t r = begin; r < end; ++r)
+    {
+      const std::int64_t j = 1 + r % (n[1] - 2);
+      const std::int64_t k = 1 + r / (n[1] - 2);
+      const std::uint8_t* const row = m.row(j, k);
+      const T* const gray = image.row(j, k);
+      for (std::int64_t i = 1; i + 1 < n[0]; ++i)
+      {
+        const int sum = row[i - 1] + row[i] + row[i + 1] + row[i - n[0]] + row[i + n[0]] +
+                        row[i - n[0] * n[1]] + row[i + n[0] * n[1]];
+        s.All[row[i]] += 1.0;
+        if (sum == 0 || sum == 7)
+        {
+          s.Sum[row[i]] += static_cast<double>(gray[i]);
+          s.Inner[row[i]] += 1.0;
+        }
+      }
+    }
+    return s;
+  };
+  return parallelReduce(0, (n[1] - 2) * (n[2] - 2), 64, InnerSums(), rowSums,
+    [](InnerSums a, const InnerSums& b)
+    {
+      for (int c = 0; c < 2; ++c)
+      {
+        a.Sum[c] += b.Sum[c];
+        a.Inner[c] += b.Inner[c];
+        a.All[c] += b.All[c];
+      }
+      return a;
+    });
+}
 } // namespace
 
 template <class T>
@@ -179,9 +228,36 @@ Result<Volume<std::uint8_t>> thresholdMask(
   return mask;
 }
 
+template <class T>
+Result<double> halfwayThreshold(const ImageView<const T>& image, double start, Monitor& monitor)
+{
+  double threshold = start;
+  if (image.Dims[0] < 3 || image.Dims[1] < 3 || image.Dims[2] < 3)
+  {
+    return start;
+  }
+  for (int iteration = 0; iteration < 3; ++iteration)
+  {
+    const auto mask = thresholdMask(image, threshold, monitor);
+    if (!mask)
+    {
+      return mask.status();
+    }
+    const InnerSums s = innerSums(image, *mask);
+    if (s.Inner[0] < 0.1 * s.All[0] || s.Inner[1] < 0.1 * s.All[1] || s.Inner[0] < 1.0 ||
+        s.Inner[1] < 1.0)
+    {
+      return start;
+    }
+    threshold = 0.5 * (s.Sum[0] / s.Inner[0] + s.Sum[1] / s.Inner[1]);
+  }
+  return threshold;
+}
+
 #define BSR_INSTANTIATE(T)                                                                         \
   template ValueRange valueRange<T>(const ImageView<const T>&);                                    \
   template Result<double> otsuThreshold<T>(const ImageView<const T>&, Monitor&);                   \
+  template Result<double> halfwayThreshold<T>(const ImageView<const T>&, double, Monitor&);        \
   template Result<Volume<std::uint8_t>> thresholdMask<T>(                                          \
     const ImageView<const T>&, double, Monitor&);
 BSR_FOR_EACH_SCALAR_TYPE(BSR_INSTANTIATE)

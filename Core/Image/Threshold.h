@@ -27,6 +27,16 @@ ValueRange valueRange(const ImageView<const T>& image);
 template <class T>
 Result<double> otsuThreshold(const ImageView<const T>& image, Monitor& monitor);
 
+/**
+ * The gray value of the surface between two materials, from a first threshold: halfway between the
+ * mean values of the voxels on either side whose six neighbors are all on the same side, iterated.
+ * The surface of a blurred edge lies halfway, whereas Otsu's threshold is pulled down by the many
+ * voxels that thin walls share with air. Returns the start value where a side has too few such
+ * voxels.
+ */
+template <class T>
+Result<double> halfwayThreshold(const ImageView<const T>& image, double start, Monitor& monitor);
+
 /// Mask of the voxels with value >= threshold.
 template <class T>
 Result<Volume<std::uint8_t>> thresholdMask(

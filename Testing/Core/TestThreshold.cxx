@@ -58,3 +58,31 @@ TEST(Threshold, MaskIncludesTheThreshold)
   EXPECT_EQ(mask->Data[2], 0);
   EXPECT_EQ(mask->Data[3], 1);
 }
+
+TEST(Threshold, HalfwayFindsTheSurfaceOfAThinBlurredWall)
+{
+  // A sheet of 5 voxels between air at 9000 and wall at 30000 with soft edges.
+  const auto image = makeVolume<std::uint16_t>({{60, 20, 20}}, {{1.0, 1.0, 1.0}},
+    [](const bsr::Int3& p)
+    {
+      const double d = 2.5 - std::abs(static_cast<double>(p[0]) - 30.2);
+      return static_cast<std::uint16_t>(19500.0 + 10500.0 * std::tanh(d));
+    });
+  bsr::Monitor monitor;
+  const double start = otsu(image);
+  const auto t = bsr::halfwayThreshold<std::uint16_t>(image.view(), start, monitor);
+  ASSERT_TRUE(t);
+  EXPECT_NEAR(*t, 19500.0, 700.0);
+}
+
+TEST(Threshold, HalfwayKeepsTheStartWithoutInnerVoxels)
+{
+  bsr::Monitor monitor;
+  const auto dots = makeVolume<float>({{9, 9, 9}}, {{1.0, 1.0, 1.0}},
+    [](const bsr::Int3& p) { return (p[0] + p[1] + p[2]) % 2 ? 1.0F : 0.0F; });
+  EXPECT_EQ(*bsr::halfwayThreshold<float>(dots.view(), 0.4, monitor), 0.4);
+  const auto flat = twoClasses<float>(0, 1, 0);
+  bsr::ImageView<const float> slice = flat.view();
+  slice.Dims[2] = 1;
+  EXPECT_EQ(*bsr::halfwayThreshold<float>(slice, 0.3, monitor), 0.3);
+}
