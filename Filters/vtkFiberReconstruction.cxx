@@ -1,0 +1,339 @@
+#include "vtkFiberReconstruction.h"
+
+#include "vtkBSplineG1Fit.h"
+#include "vtkClosing.h"
+#include "vtkEDTClassify.h"
+#include "vtkFiberEnds.h"
+#include "vtkPartitionToQuads.h"
+#include "vtkQuadRemesh.h"
+
+#include <vtkCommand.h>
+#include <vtkDataArray.h>
+#include <vtkDataObject.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkFlyingEdges3D.h>
+#include <vtkImageData.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkStringArray.h>
+#include <vtkTable.h>
+#include <vtkTimerLog.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+vtkStandardNewMacro(vtkFiberReconstruction);
+
+namespace
+{
+/**
+ * Runs the stages one after the other: passes their progress and errors on to the compound, and the
+ * compound's abort flag to them, and keeps the time of each.
+ */
+class StageRunner
+{
+public:
+  StageRunner(vtkAlgorithm* owner, double total) : Owner(owner), Total(total) {}
+
+  /// Updates a filter; false when it failed or was aborted. `share`: its part of the whole work.
+  bool run(const char* name, vtkAlgorithm* stage, double share)
+  {
+    this->Stage = name;
+    this->Begin = this->Done;
+    this->Share = share;
+    const auto progress =
+      stage->AddObserver(vtkCommand::ProgressEvent, this, &StageRunner::onProgress);
+    const auto error = this->observeErrors(stage);
+    const double start = vtkTimerLog::GetUniversalTime();
+    stage->Update();
+    this->Names.emplace_back(name);
+    this->Seconds.push_back(vtkTimerLog::GetUniversalTime() - start);
+    stage->RemoveObserver(progress);
+    stage->RemoveObserver(error.first);
+    stage->GetExecutive()->RemoveObserver(error.second);
+    this->Done += share;
+    this->Owner->UpdateProgress(this->Done / this->Total);
+    return this->Message.empty() && !this->Owner->GetAbortExecute();
+  }
+
+  const std::string& message() const { return this->Message; }
+  const std::string& stage() const { return this->Stage; }
+
+  void addTimes(vtkFieldData* field) const
+  {
+    vtkNew<vtkStringArray> names;
+    names->SetName("StageNames");
+    vtkNew<vtkDoubleArray> seconds;
+    seconds->SetName("StageSeconds");
+    for (std::size_t i = 0; i < this->Names.size(); ++i)
+    {
+      names->InsertNextValue(this->Names[i]);
+      seconds->InsertNextValue(this->Seconds[i]);
+    }
+    field->AddArray(names);
+    field->AddArray(seconds);
+  }
+
+private:
+  std::pair<unsigned long, unsigned long> observeErrors(vtkAlgorithm* stage)
+  {
+    return {stage->AddObserver(vtkCommand::ErrorEvent, this, &StageRunner::onError),
+      stage->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, this, &StageRunner::onError)};
+  }
+
+  void onProgress(vtkObject* caller, unsigned long, void* data)
+  {
+    const double share = data ? *static_cast<double*>(data) : 0.0;
+    this->Owner->UpdateProgress((this->Begin + share * this->Share) / this->Total);
+    if (this->Owner->GetAbortExecute())
+    {
+      vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1);
+    }
+  }
+
+  void onError(vtkObject*, unsigned long, void* data)
+  {
+    if (this->Message.empty())
+    {
+      this->Message = data ? static_cast<const char*>(data) : "unknown error";
+    }
+  }
+
+  vtkAlgorithm* Owner;
+  double Total;
+  double Done = 0.0;
+  double Begin = 0.0;
+  double Share = 0.0;
+  std::string Stage;
+  std::string Message;
+  std::vector<std::string> Names;
+  std::vector<double> Seconds;
+};
+
+/// The text of an error without VTK's "ERROR: In file, line ...: vtkX (0x...): " in front.
+std::string plainMessage(const std::string& text)
+{
+  const auto at = text.find("): ");
+  std::string plain = at == std::string::npos ? text : text.substr(at + 3);
+  while (!plain.empty() && (plain.back() == '\n' || plain.back() == ' '))
+  {
+    plain.pop_back();
+  }
+  return plain;
+}
+
+void copyField(vtkFieldData* from, vtkFieldData* to, std::initializer_list<const char*> names)
+{
+  for (const char* name : names)
+  {
+    if (vtkAbstractArray* a = from->GetAbstractArray(name))
+    {
+      to->AddArray(a);
+    }
+  }
+}
+
+/// Marks the points of the side that is not wanted as belonging to neither wall.
+void keepSide(vtkPolyData* surface, unsigned char unwanted)
+{
+  auto* old = surface->GetPointData()->GetArray("Side");
+  vtkNew<vtkUnsignedCharArray> side;
+  side->SetName("Side");
+  side->SetNumberOfValues(old->GetNumberOfTuples());
+  for (vtkIdType i = 0; i < old->GetNumberOfTuples(); ++i)
+  {
+    const auto s = static_cast<unsigned char>(old->GetComponent(i, 0));
+    side->SetValue(i, s == unwanted ? 255 : s);
+  }
+  surface->GetPointData()->AddArray(side);
+}
+} // namespace
+
+vtkFiberReconstruction::vtkFiberReconstruction()
+{
+  this->SetNumberOfInputPorts(1);
+  this->SetNumberOfOutputPorts(6);
+  this->SetInputArrayToProcess(
+    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+}
+
+int vtkFiberReconstruction::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  return 1;
+}
+
+int vtkFiberReconstruction::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == REPORT ? "vtkTable" : "vtkPolyData");
+  return 1;
+}
+
+vtkTypeBool vtkFiberReconstruction::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
+{
+  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()))
+  {
+    // The object is found in the whole volume.
+    vtkInformation* in = input[0]->GetInformationObject(0);
+    if (in->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+    {
+      in->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(),
+        in->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()), 6);
+    }
+    return 1;
+  }
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
+  {
+    return this->RequestData(request, input, output);
+  }
+  return this->Superclass::ProcessRequest(request, input, output);
+}
+
+int vtkFiberReconstruction::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkNew<vtkImageData> image;
+  image->ShallowCopy(vtkImageData::GetData(inputs[0]));
+  vtkInformation* array = this->GetInputArrayInformation(0);
+  StageRunner stages(this, 100.0);
+  const auto fail = [&]()
+  {
+    for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
+    {
+      vtkDataObject::GetData(outputs, port)->Initialize();
+    }
+    if (!stages.message().empty())
+    {
+      vtkErrorMacro(<< stages.stage() << ": " << plainMessage(stages.message()));
+    }
+    return 0;
+  };
+
+  vtkNew<vtkClosing> closing;
+  closing->SetInputData(image);
+  closing->SetInputArrayToProcess(0, array);
+  closing->SetIsoValue(this->IsoValue);
+  closing->SetAutoIsoValue(this->AutoIsoValue);
+  closing->SetRadius(this->Radius);
+  closing->SetAutoRadius(this->AutoRadius);
+  if (!stages.run("Closing", closing, 25.0))
+  {
+    return fail();
+  }
+  vtkFieldData* closingNumbers = closing->GetOutput()->GetFieldData();
+
+  vtkNew<vtkFlyingEdges3D> closedSurface;
+  closedSurface->SetInputConnection(closing->GetOutputPort());
+  closedSurface->SetInputArrayToProcess(
+    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "SignedDistance");
+  closedSurface->SetValue(0, 0.0);
+  closedSurface->ComputeScalarsOff();
+  vtkNew<vtkFlyingEdges3D> rawSurface;
+  rawSurface->SetInputData(image);
+  rawSurface->SetInputArrayToProcess(0, array);
+  rawSurface->SetValue(0, closingNumbers->GetArray("IsoValue")->GetComponent(0, 0));
+  rawSurface->ComputeScalarsOff();
+  if (!stages.run("Closed surface", closedSurface, 2.0) ||
+      !stages.run("Raw surface", rawSurface, 3.0))
+  {
+    return fail();
+  }
+
+  vtkNew<vtkEDTClassify> classify;
+  classify->SetInputConnection(0, rawSurface->GetOutputPort());
+  classify->SetInputConnection(1, closing->GetOutputPort());
+  if (!stages.run("EDTClassify", classify, 15.0))
+  {
+    return fail();
+  }
+  vtkNew<vtkPolyData> classified;
+  classified->ShallowCopy(classify->GetOutput());
+  vtkNew<vtkPolyData> sides;
+  sides->ShallowCopy(classified);
+  if (this->Sides != BOTH)
+  {
+    keepSide(sides, this->Sides == OUTER_ONLY ? 1 : 0);
+  }
+
+  vtkNew<vtkFiberEnds> ends;
+  ends->SetInputConnection(0, closedSurface->GetOutputPort());
+  ends->SetInputData(1, classified);
+  vtkNew<vtkQuadRemesh> remesh;
+  remesh->SetNumberOfQuads(this->NumberOfQuads);
+  if (this->OpenEnds == 0)
+  {
+    if (!stages.run("FiberEnds", ends, 5.0))
+    {
+      return fail();
+    }
+    remesh->SetInputConnection(ends->GetOutputPort());
+  }
+  else
+  {
+    remesh->SetInputConnection(closedSurface->GetOutputPort());
+  }
+  if (!stages.run("QuadRemesh", remesh, 20.0))
+  {
+    return fail();
+  }
+
+  vtkNew<vtkPartitionToQuads> partition;
+  partition->SetInputData(0, sides);
+  partition->SetInputConnection(1, remesh->GetOutputPort());
+  if (!stages.run("PartitionToQuads", partition, 5.0))
+  {
+    return fail();
+  }
+
+  vtkNew<vtkBSplineG1Fit> fit;
+  fit->SetInputConnection(0, partition->GetOutputPort());
+  fit->SetInputConnection(1, remesh->GetOutputPort());
+  fit->SetContinuity(this->Continuity);
+  fit->SetSegmentsPerSide(this->SegmentsPerSide);
+  fit->SetOpenEnds(this->OpenEnds);
+  fit->SetResolution(this->Resolution);
+  if (!stages.run("BSplineG1Fit", fit, 25.0))
+  {
+    return fail();
+  }
+
+  for (int port = 0; port < 3; ++port)
+  {
+    vtkDataObject::GetData(outputs, port)->ShallowCopy(fit->GetOutputDataObject(port));
+  }
+  vtkPolyData::GetData(outputs, CLOSED_SURFACE)
+    ->ShallowCopy(this->OpenEnds == 0 ? ends->GetOutputDataObject(0) : closedSurface->GetOutput());
+  vtkPolyData::GetData(outputs, LAYOUT)->ShallowCopy(remesh->GetOutput());
+  vtkPolyData::GetData(outputs, RAW_SURFACE)->ShallowCopy(partition->GetOutputDataObject(0));
+
+  vtkFieldData* report = vtkTable::GetData(outputs, REPORT)->GetFieldData();
+  stages.addTimes(report);
+  copyField(closingNumbers, report, {"IsoValue", "ClosingRadius", "BettiNumbers"});
+  if (this->OpenEnds == 0)
+  {
+    copyField(ends->GetOutputDataObject(0)->GetFieldData(), report, {"OpenEnds"});
+  }
+  return 1;
+}
+
+void vtkFiberReconstruction::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "IsoValue: " << this->IsoValue << (this->AutoIsoValue ? " (automatic)\n" : "\n")
+     << indent << "Radius: " << this->Radius << (this->AutoRadius ? " (automatic)\n" : "\n")
+     << indent << "NumberOfQuads: " << this->NumberOfQuads << "\n"
+     << indent << "Sides: " << this->Sides << "\n"
+     << indent << "OpenEnds: " << this->OpenEnds << "\n"
+     << indent << "Continuity: " << this->Continuity << "\n"
+     << indent << "SegmentsPerSide: " << this->SegmentsPerSide << "\n"
+     << indent << "Resolution: " << this->Resolution << "\n";
+}
