@@ -43,7 +43,7 @@ def show(proxy, view, color=None, array=None, edges=False, categories=False):
     display = pv.Show(proxy, view, "GeometryRepresentation")
     display.Representation = "Surface With Edges" if edges else "Surface"
     if array is None:
-        pv.ColorBy(display, None)
+        display.ColorArrayName = [None, ""]
         display.AmbientColor = display.DiffuseColor = color or SURFACE
     else:
         pv.ColorBy(display, array)
