@@ -15,3 +15,14 @@ check_close(after[8, 8, 8], expected, 1e-4, "median at the center")
 f.KernelSize = [1, 1, 1]
 same = array(fetch(f), "RTData").reshape(17, 17, 17)
 check(numpy.array_equal(same, before), "a box of one voxel changes nothing")
+
+# A source that has not run yet offers no array; the filter then takes the active scalars.
+late = FiberPhantom(Dimensions=[48, 32, 32])
+m = Median(Input=OutputPort(late, 0))
+with Errors(m) as errors:
+    check_equal(len(array(fetch(m), "CT")), 48 * 32 * 32, "voxels")
+errors.check_none()
+m.Scalars = ["POINTS", "Nothing"]
+with Errors(m) as errors:
+    m.UpdatePipeline()
+errors.check_one("choose one under Scalars")
