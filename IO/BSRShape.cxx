@@ -332,7 +332,7 @@ CadShape separateFaces(const SplineModel& model, double scale)
 CadShape exactSolids(const SplineModel& model, double scale)
 {
   const Nesting nesting = findNesting(model);
-  const std::vector<char> flip = orientationFlips(model);
+  const std::vector<char> flip = outwardFlips(model);
   ShapeBuilder builder(model, scale, true);
   BRep_Builder build;
   std::vector<TopoDS_Shell> shells(nesting.Closed.size());
@@ -343,10 +343,8 @@ CadShape exactSolids(const SplineModel& model, double scale)
   for (std::size_t p = 0; p < model.Patches.size(); ++p)
   {
     const Index c = nesting.Component[p];
-    // Outward on bodies, into the void on voids.
-    const bool turn = nesting.Closed[c] && (nesting.Volume[c] < 0) != (nesting.Depth[c] % 2 == 1);
     const TopoDS_Face face = builder.face(static_cast<std::int64_t>(p));
-    build.Add(shells[c], face.Oriented((flip[p] != 0) != turn ? TopAbs_REVERSED : TopAbs_FORWARD));
+    build.Add(shells[c], face.Oriented(flip[p] ? TopAbs_REVERSED : TopAbs_FORWARD));
   }
   CadShape out;
   TopoDS_Compound all;

@@ -58,8 +58,23 @@ Status check(
   return checkQuads(quads);
 }
 
+/// -1 where the quads enclose a negative volume (inside out), else 1.
+double orientationOf(const QuadMesh& mesh)
+{
+  const Vec3& apex = mesh.Points[mesh.Quads[0][0]];
+  double volume = 0.0;
+  for (const auto& q : mesh.Quads)
+  {
+    const Vec3 diagonal = mesh.Points[q[2]] - mesh.Points[q[0]];
+    const Vec3 other = mesh.Points[q[3]] - mesh.Points[q[1]];
+    volume += (mesh.Points[q[0]] + mesh.Points[q[2]] - 2.0 * apex).dot(diagonal.cross(other));
+  }
+  return volume < 0.0 ? -1.0 : 1.0;
+}
+
 void locate(const NearestQuad& nearest, const std::vector<Vec3>& points,
-  const std::vector<Vec3>& facing, std::int64_t begin, std::int64_t end, Partition& out)
+  const std::vector<Vec3>& facing, double sign, std::int64_t begin, std::int64_t end,
+  Partition& out)
 {
   Index hint = -1;
   for (std::int64_t i = begin; i < end; ++i)
@@ -67,7 +82,7 @@ void locate(const NearestQuad& nearest, const std::vector<Vec3>& points,
     QuadHit hit;
     if (!facing.empty() && facing[i].squaredNorm() > 0.0)
     {
-      hit = nearest.findFacing(points[i], facing[i], hint);
+      hit = nearest.findFacing(points[i], sign * facing[i], hint);
     }
     if (hit.Quad < 0)
     {
@@ -103,6 +118,7 @@ Result<Partition> partitionToQuads(const std::vector<Vec3>& points, const QuadMe
     return s;
   }
   const NearestQuad nearest(quads);
+  const double sign = orientationOf(quads);
   Partition out;
   out.QuadId.resize(points.size());
   out.UV.resize(points.size());
@@ -118,7 +134,7 @@ Result<Partition> partitionToQuads(const std::vector<Vec3>& points, const QuadMe
     monitor.progress(static_cast<double>(first) / static_cast<double>(n));
     parallelFor(first, std::min(first + block, n), 1000,
       [&](std::int64_t begin, std::int64_t end)
-      { locate(nearest, points, options.Facing, begin, end, out); });
+      { locate(nearest, points, options.Facing, sign, begin, end, out); });
   }
   summarize(nearest.size(), out);
   monitor.progress(1.0);

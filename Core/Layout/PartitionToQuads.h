@@ -10,6 +10,7 @@ struct PartitionOptions
 {
   /// One vector a point, or empty. A point is given only quads whose normal makes less than 90
   /// degrees with its vector (a zero vector: any quad), or the nearest quad where there is none.
+  /// The normals of a layout that is inside out as a whole are turned over.
   std::vector<Vec3> Facing;
 };
 

@@ -2,6 +2,7 @@
 #include "Common/Parallel.h"
 #include "Spline/Bezier.h"
 #include "Spline/Evaluate.h"
+#include "Spline/Volume.h"
 
 #include <cmath>
 
@@ -61,7 +62,7 @@ double percentile(const std::vector<double>& sorted, double share)
 }
 } // namespace
 
-ClosestPoint::ClosestPoint(const SplineModel& model) : Model(model), Flip(orientationFlips(model))
+ClosestPoint::ClosestPoint(const SplineModel& model) : Model(model), Flip(outwardFlips(model))
 {
   std::vector<Box> boxes;
   for (std::size_t p = 0; p < model.Patches.size(); ++p)

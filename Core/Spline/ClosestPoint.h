@@ -16,7 +16,7 @@ struct ModelHit
   double V = 0.0;
   double SquaredDistance = std::numeric_limits<double>::infinity();
   Vec3 Point = Vec3::Zero();
-  Vec3 Normal = Vec3::Zero(); ///< unit, by orientationFlips
+  Vec3 Normal = Vec3::Zero(); ///< unit, by outwardFlips
   Index Cell = -1;            ///< a hint for the next query
 };
 

@@ -2,6 +2,7 @@
 #include "Common/Parallel.h"
 #include "Spline/Evaluate.h"
 #include "Spline/Topology.h"
+#include "Spline/Volume.h"
 
 #include <cmath>
 #include <limits>
@@ -232,7 +233,7 @@ Result<Plan> makePlan(const SplineModel& model, const SampleOptions& options)
     return Status::invalidParameter(
       "This would make more than 200 million points; lower the resolution or raise the tolerance.");
   }
-  plan.Flip = orientationFlips(model);
+  plan.Flip = options.Outward ? outwardFlips(model) : orientationFlips(model);
   plan.Grids = stitchGrids(model, plan.Sizes);
   return plan;
 }

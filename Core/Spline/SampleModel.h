@@ -11,6 +11,9 @@ struct SampleOptions
   int Resolution = 4;      ///< quads a side of a polynomial piece, 1 to 256
   double Tolerance = 0.0;  ///< > 0: chordal tolerance in world units instead of Resolution
   bool Curvatures = false; ///< compute MeanCurvature and GaussCurvature too
+  /// Turn closed components so that normals point out of the material (outwardFlips); otherwise
+  /// each component keeps the orientation that most of its patches have.
+  bool Outward = true;
 };
 
 /**

@@ -200,7 +200,9 @@ Nesting findNesting(const SplineModel& model)
     return n;
   }
   Monitor monitor;
-  const Result<SampledModel> mesh = sampleModel(model, SampleOptions{}, monitor);
+  SampleOptions options;
+  options.Outward = false;
+  const Result<SampledModel> mesh = sampleModel(model, options, monitor);
   for (Index c = 0; mesh.isOk() && c < count; ++c)
   {
     for (Index d = 0; d < count; ++d)
@@ -217,6 +219,19 @@ Nesting findNesting(const SplineModel& model)
     }
   }
   return n;
+}
+
+std::vector<char> outwardFlips(const SplineModel& model)
+{
+  std::vector<char> flip = orientationFlips(model);
+  const Nesting n = findNesting(model);
+  for (std::size_t p = 0; p < flip.size(); ++p)
+  {
+    const Index c = n.Component[p];
+    const bool turn = n.Closed[c] && (n.Volume[c] < 0.0) != (n.Depth[c] % 2 == 1);
+    flip[p] = turn ? !flip[p] : flip[p];
+  }
+  return flip;
 }
 
 ModelMeasure measureModel(const SplineModel& model)

@@ -34,6 +34,12 @@ struct Nesting
 /// Finds which components enclose which by winding numbers about sampled polygons.
 Nesting findNesting(const SplineModel& model);
 
+/**
+ * One flag a patch: turn it over so that the normals of closed components point out of the
+ * material: outward on bodies, inward on voids. Open components are as orientationFlips has them.
+ */
+std::vector<char> outwardFlips(const SplineModel& model);
+
 /// Signed volume of each component (patchComponents), by orientationFlips: positive where the
 /// normals point outward. Meaningless for open components.
 std::vector<double> componentVolumes(const SplineModel& model);

@@ -138,6 +138,13 @@ TEST(PartitionToQuads, FacingKeepsToOneSide)
   EXPECT_EQ(p->QuadId, (std::vector<Index>{0, 1, 1, 1}));
   EXPECT_NEAR(p->Distance[0], 0.8, 1e-15);
   EXPECT_EQ(p->EmptyQuads, 0);
+  // A layout that is inside out as a whole gives the same.
+  for (auto& q : mesh.Quads)
+  {
+    std::reverse(q.begin(), q.end());
+  }
+  const auto r = partitionToQuads(std::vector<Vec3>(4, Vec3(.5, .5, -.8)), mesh, options, monitor);
+  EXPECT_EQ(r->QuadId, p->QuadId);
 }
 
 TEST(PartitionToQuads, DegenerateQuadsDoNoHarm)

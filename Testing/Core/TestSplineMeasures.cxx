@@ -186,6 +186,21 @@ TEST(ClosestPoint, NoSampleIsNearerAndSignsHoldAtSharpEdges)
   EXPECT_LT(closest.signedDistance(inside, closest.find(inside)), 0.0);
 }
 
+TEST(ClosestPoint, AModelStoredInsideOutHasTheSameSigns)
+{
+  SplineModel m;
+  samples::addBall(m, 1.0, 1, 1, true);
+  samples::addBall(m, 0.4, 1, 1, false, Shell::Inner);
+  samples::connect(m);
+  const std::vector<Vec3> points = {Vec3(1.5, 0, 0), Vec3(0.7, 0, 0), Vec3(0.1, 0, 0)};
+  Monitor monitor;
+  const auto d = measureDeviation(m, points, {}, monitor);
+  ASSERT_TRUE(d.isOk());
+  EXPECT_GT(d->Distance[0], 0.0);
+  EXPECT_LT(d->Distance[1], 0.0);
+  EXPECT_GT(d->Distance[2], 0.0);
+}
+
 TEST(ClosestPoint, ShellsCanBeChosen)
 {
   const SplineModel m = samples::hollowBall(1.0, 0.5);
