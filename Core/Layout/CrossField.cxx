@@ -1,9 +1,8 @@
 #include "Layout/CrossField.h"
 
-#include "Common/Parallel.h"
+#include "Mesh/Curvature.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <Eigen/SparseCholesky>
 
 #include <cmath>
@@ -16,20 +15,6 @@ namespace
 using Complex = std::complex<double>;
 using ComplexVector = Eigen::Matrix<Complex, Eigen::Dynamic, 1>;
 using ComplexMatrix = Eigen::SparseMatrix<Complex>;
-
-struct Frame
-{
-  Vec3 X;
-  Vec3 Y;
-};
-
-Frame frameOf(const TriangleSurface& s, Index face)
-{
-  const auto c = s.corners(face);
-  const Vec3 x = (s.Points[c[1]] - s.Points[c[0]]).normalized();
-  const Vec3 n = s.areaNormal(face).normalized();
-  return {x, n.cross(x)};
-}
 
 class FieldSolver
 {
@@ -91,24 +76,13 @@ private:
   void bendings()
   {
     const TriangleSurface& s = this->S;
-    std::vector<Vec3> normal(s.Points.size(), Vec3::Zero());
-    for (Index f = 0; f < s.faces(); ++f)
-    {
-      for (Index v : s.corners(f))
-      {
-        normal[v] += this->Inside[f] ? s.areaNormal(f) : Vec3(Vec3::Zero());
-      }
-    }
-    for (Vec3& n : normal)
-    {
-      n.normalize();
-    }
+    const std::vector<Vec3> form = faceCurvature(s, this->Inside);
     this->Bending.assign(static_cast<std::size_t>(this->Rows), Complex(0.0));
     for (Index f = 0; f < s.faces(); ++f)
     {
       if (this->Row[f] >= 0)
       {
-        this->Bending[this->Row[f]] = this->bending(f, normal);
+        this->Bending[this->Row[f]] = Complex(form[f][0] - form[f][2], 2.0 * form[f][1]);
       }
     }
     for (int round = 0; round < 6; ++round)
@@ -137,27 +111,36 @@ private:
     }
   }
 
-  Complex bending(Index f, const std::vector<Vec3>& normal) const
+  /// Direction of a crease at half-edge h, over some edges on either side so that jagged borders
+  /// do not turn the field.
+  double creaseAngle(Index h) const
   {
-    const TriangleSurface& s = this->S;
-    const Frame frame = frameOf(s, f);
-    Eigen::Matrix<double, 6, 3> a;
-    Eigen::Matrix<double, 6, 1> b;
-    for (int k = 0; k < 3; ++k)
+    const Vec3 ahead = this->S.Points[this->along(h, this->S.end(h), 3)];
+    const Vec3 behind = this->S.Points[this->along(h, this->S.start(h), 3)];
+    const FaceFrame frame = faceFrame(this->S, h / 3);
+    const Vec3 d = ahead - behind;
+    const double angle = std::atan2(d.dot(frame.Y), d.dot(frame.X));
+    const double off = std::remainder(angle - this->EdgeAngle[h], 2.0 * M_PI);
+    return std::abs(off) < 0.9 ? angle : this->EdgeAngle[h];
+  }
+
+  /// The vertex some steps along the crease of h, from its end or start away from h.
+  Index along(Index h, Index v, int steps) const
+  {
+    Index from = v == this->S.end(h) ? this->S.start(h) : this->S.end(h);
+    for (int i = 0; i < steps && this->S.creaseDegree(v) == 2; ++i)
     {
-      const Index h = 3 * f + k;
-      const Vec3 e = s.Points[s.end(h)] - s.Points[s.start(h)];
-      const Vec3 d = normal[s.end(h)] - normal[s.start(h)];
-      const double x = e.dot(frame.X);
-      const double y = e.dot(frame.Y);
-      a.row(2 * k) << x, y, 0.0;
-      a.row(2 * k + 1) << 0.0, x, y;
-      b[2 * k] = d.dot(frame.X);
-      b[2 * k + 1] = d.dot(frame.Y);
+      Index next = -1;
+      this->S.around(v, [&](Index x)
+        { next = this->S.Crease[x] && this->S.end(x) != from ? this->S.end(x) : next; });
+      if (next < 0)
+      {
+        break;
+      }
+      from = v;
+      v = next;
     }
-    const Vec3 q = a.colPivHouseholderQr().solve(b);
-    const Complex result(q[0] - q[2], 2.0 * q[1]);
-    return std::isfinite(std::norm(result)) ? result : Complex(0.0);
+    return v;
   }
 
   /// What each face would like to be, and how much.
@@ -183,7 +166,7 @@ private:
       {
         if (this->S.Crease[h])
         {
-          along += std::polar(1.0, 4.0 * this->EdgeAngle[h]);
+          along += std::polar(1.0, 4.0 * this->creaseAngle(h));
         }
       }
       if (std::abs(along) > 0.1)
@@ -285,7 +268,7 @@ private:
 
 double edgeAngle(const TriangleSurface& s, Index h)
 {
-  const Frame frame = frameOf(s, h / 3);
+  const FaceFrame frame = faceFrame(s, h / 3);
   const Vec3 e = s.Points[s.end(h)] - s.Points[s.start(h)];
   return std::atan2(e.dot(frame.Y), e.dot(frame.X));
 }

@@ -14,6 +14,7 @@ namespace
 {
 using Sparse = Eigen::SparseMatrix<double>;
 constexpr Index MostIntegers = 1200;
+constexpr int StiffeningPasses = 2;
 
 /// A corner coordinate as a combination of unknowns.
 using Combination = std::vector<std::pair<Index, double>>;
@@ -21,44 +22,43 @@ using Combination = std::vector<std::pair<Index, double>>;
 class GridSolver
 {
 public:
-  GridSolver(const TriangleSurface& s, const GridTopology& topology, double cell)
-      : S(s), Topology(topology), Cell(cell), Stiffness(s.Region.size(), 1.0)
+  GridSolver(
+    const TriangleSurface& s, const GridTopology& topology, const std::vector<double>& cells)
+      : S(s), Topology(topology), Cells(cells), Stiffness(s.Region.size(), 1.0)
   {
     this->number();
   }
 
-  bool run(std::vector<Vec2>& uv, std::vector<std::int64_t>& integers, int& folded)
+  template <class Offer>
+  void run(const Offer& offer)
   {
     const Index ny = this->Topology.Kernel.freeVariables();
-    if (ny > MostIntegers)
+    if (ny > MostIntegers || !this->assemble() || !this->reduce())
     {
-      return false;
-    }
-    if (!this->assemble() || !this->reduce())
-    {
-      return false;
+      return;
     }
     this->round();
-    for (int pass = 0; pass < 6; ++pass)
-    {
-      const Eigen::VectorXd x = this->Solver.solve(this->Br - this->Hry * this->Y);
-      if (this->Solver.info() != Eigen::Success || !x.allFinite())
-      {
-        return false;
-      }
-      this->evaluate(x, uv);
-      folded = this->stiffen(uv);
-      if (folded == 0 || pass == 5 || !this->assemble())
-      {
-        break;
-      }
-    }
-    integers.resize(static_cast<std::size_t>(ny));
+    std::vector<std::int64_t> integers(static_cast<std::size_t>(ny));
     for (Index i = 0; i < ny; ++i)
     {
       integers[i] = std::llround(this->Y[i]);
     }
-    return true;
+    for (int pass = 0; pass < StiffeningPasses; ++pass)
+    {
+      const Eigen::VectorXd right = this->Br - this->Hry * this->Y;
+      const Eigen::VectorXd x = this->Solver.solve(right);
+      if (this->Solver.info() != Eigen::Success || !x.allFinite())
+      {
+        return;
+      }
+      std::vector<Vec2> uv;
+      this->evaluate(x, uv);
+      const int folded = this->stiffen(uv);
+      if (offer(std::move(uv), integers, folded) || folded == 0 || !this->assemble())
+      {
+        return;
+      }
+    }
   }
 
 private:
@@ -171,12 +171,13 @@ private:
   void addFace(Index f, List& rr, List& ry)
   {
     std::array<Vec2, 3> g;
-    const double area = 0.5 * this->gradients(f, g) / (this->Cell * this->Cell);
+    const double area = 0.5 * this->gradients(f, g);
+    const double cell = this->Cells[f];
     const double angle = this->Topology.Field.Angle[f];
-    const std::array<Vec2, 2> wish = {Vec2(std::cos(angle), std::sin(angle)) / this->Cell,
-      Vec2(-std::sin(angle), std::cos(angle)) / this->Cell};
-    // Lengths in cells: the energy has no unit.
-    const double weight = this->Stiffness[f] * area * this->Cell * this->Cell;
+    const std::array<Vec2, 2> wish = {Vec2(std::cos(angle), std::sin(angle)) / cell,
+      Vec2(-std::sin(angle), std::cos(angle)) / cell};
+    // The area of all cells weighs alike.
+    const double weight = this->Stiffness[f] * area;
     for (int c = 0; c < 2; ++c)
     {
       for (int i = 0; i < 3; ++i)
@@ -305,7 +306,7 @@ private:
       const Vec2 a = uv[3 * f + 1] - uv[3 * f];
       const Vec2 b = uv[3 * f + 2] - uv[3 * f];
       const double area = a[0] * b[1] - a[1] * b[0];
-      const double wished = 2.0 * this->S.areaNormal(f).norm() / (this->Cell * this->Cell);
+      const double wished = 2.0 * this->S.areaNormal(f).norm() / (this->Cells[f] * this->Cells[f]);
       folded += area <= 0.0;
       if (area < 0.1 * wished)
       {
@@ -325,7 +326,7 @@ private:
 
   const TriangleSurface& S;
   const GridTopology& Topology;
-  double Cell;
+  const std::vector<double>& Cells;
   std::vector<double> Stiffness;
   std::vector<Index> Real;
   Index Reals = 0;
@@ -342,29 +343,30 @@ private:
 };
 } // namespace
 
-GridMap gridMap(const TriangleSurface& s, const CrossField& field, double cell)
+void gridMap(const TriangleSurface& s, const CrossField& field, const std::vector<double>& cells,
+  const std::function<bool(const GridMap&)>& accept)
 {
-  GridMap map;
   if (field.Angle.empty())
   {
-    return map;
+    return;
   }
   const GridTopology topology = gridTopology(s, field);
   if (!topology.Usable)
   {
-    return map;
+    return;
   }
-  std::vector<std::int64_t> integers;
-  std::vector<Vec2> uv;
-  if (!GridSolver(s, topology, cell).run(uv, integers, map.Folded))
-  {
-    return map;
-  }
+  GridMap map;
   map.Surface = s;
   map.Inside = field.Inside;
-  map.UV = std::move(uv);
   map.Singular = topology.Singular;
-  topology.transitions(s, integers, map.Turn, map.Shift);
-  return map;
+  GridSolver(s, topology, cells)
+    .run(
+      [&](std::vector<Vec2> uv, const std::vector<std::int64_t>& integers, int folded)
+      {
+        map.UV = std::move(uv);
+        map.Folded = folded;
+        topology.transitions(s, integers, map.Turn, map.Shift);
+        return accept(map);
+      });
 }
 } // namespace bsr

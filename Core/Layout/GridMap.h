@@ -2,6 +2,7 @@
 
 #include "Layout/CrossField.h"
 
+#include <functional>
 #include <vector>
 
 namespace bsr
@@ -46,7 +47,9 @@ struct GridMap
  * problem is reduced to the integer unknowns (a dense Schur complement), which are fixed one by
  * one in the order of least harm and improved by single steps; then triangles that fold are
  * stiffened. Borders towards regions (not holes) get an even number of cells.
- * An empty UV says that no map was found.
+ * `cells` is the side of a cell wanted in each triangle. Each map on the way is offered to
+ * `accept`, which returns true if it is good enough; there may be none.
  */
-GridMap gridMap(const TriangleSurface& s, const CrossField& field, double cell);
+void gridMap(const TriangleSurface& s, const CrossField& field, const std::vector<double>& cells,
+  const std::function<bool(const GridMap&)>& accept);
 } // namespace bsr

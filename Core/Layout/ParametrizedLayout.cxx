@@ -1,6 +1,8 @@
 #include "Layout/ParametrizedLayout.h"
 
+#include "Common/Parallel.h"
 #include "Layout/CapDisc.h"
+#include "Layout/CleanLayout.h"
 #include "Layout/CrossField.h"
 #include "Layout/ExtractQuads.h"
 #include "Layout/GridMap.h"
@@ -14,19 +16,31 @@ namespace bsr
 namespace
 {
 constexpr double TrianglesPerQuad = 24.0;
+constexpr double GoodCost = 8.0; ///< no other field is tried then
 
-/// One try: extraction, caps, check.
-LayoutDraft tryField(const TriangleSurface& s, const CrossField& field, double cell, int euler)
+/// Side of a grid cell wanted in each triangle.
+std::vector<double> cellsOf(const TriangleSurface& s, const Sizing& sizing, double cell)
+{
+  std::vector<double> cells(s.Region.size(), cell);
+  parallelFor(0, s.faces(), 256,
+    [&](std::int64_t first, std::int64_t last)
+    {
+      for (auto f = static_cast<Index>(first); f < last; ++f)
+      {
+        const auto c = s.corners(f);
+        cells[f] = sizing.side((s.Points[c[0]] + s.Points[c[1]] + s.Points[c[2]]) / 3.0, cell);
+      }
+    });
+  return cells;
+}
+
+/// The layout of a map: extraction, repair, caps, check. No quads if it is not valid.
+LayoutDraft layoutOf(const GridMap& map, int euler)
 {
   std::vector<std::vector<Index>> borders;
   std::vector<Index> regions;
-  const GridMap map = gridMap(s, field, cell);
   LayoutDraft draft = extractQuads(map, borders, regions);
-  if (draft.Mesh.Quads.empty())
-  {
-    return {};
-  }
-  for (std::size_t i = 0; i < borders.size(); ++i)
+  for (std::size_t i = 0; i < borders.size() && !draft.Mesh.Quads.empty(); ++i)
   {
     std::reverse(borders[i].begin(), borders[i].end());
     if (regions[i] != TriangleSurface::HoleRegion && !capDisc(draft, borders[i], regions[i]))
@@ -34,28 +48,51 @@ LayoutDraft tryField(const TriangleSurface& s, const CrossField& field, double c
       return {};
     }
   }
+  if (draft.Mesh.Quads.empty())
+  {
+    return {};
+  }
+  cleanLayout(draft);
   const LayoutReport report = checkLayout(draft.Mesh);
   return report.Valid && report.Euler == euler && report.MaxValence <= 8 ? draft : LayoutDraft{};
 }
+
+LayoutDraft tryField(
+  const TriangleSurface& s, const CrossField& field, const std::vector<double>& cells, int euler)
+{
+  LayoutDraft draft;
+  gridMap(s, field, cells,
+    [&](const GridMap& map)
+    {
+      draft = layoutOf(map, euler);
+      return !draft.Mesh.Quads.empty();
+    });
+  return draft;
+}
 } // namespace
 
-double layoutCost(const LayoutReport& report, int wanted, int got)
+double layoutCost(const LayoutDraft& draft, const LayoutReport& report, const TriangleSurface& s,
+  const ReferenceSurface& reference, int wanted)
 {
-  const double miss = std::abs(std::log(static_cast<double>(got) / wanted));
+  const auto got = static_cast<double>(draft.Mesh.Quads.size());
+  const double miss = std::abs(std::log(got / wanted));
+  const double cell = std::sqrt(s.area() / wanted);
+  const double off = layoutDistance(draft.Mesh, s, reference).Maximum / cell;
   return report.MeanAngleDeviation + 60.0 * std::max(0.0, 0.4 - report.MinJacobian) +
-         10.0 * report.Irregular / std::sqrt(static_cast<double>(wanted)) / 3.0 +
-         100.0 * std::max(0.0, miss - 0.08) + 50.0 * report.Flipped;
+         3.3 * report.Irregular / std::sqrt(static_cast<double>(wanted)) +
+         60.0 * std::max(0.0, miss - 0.07) + 20.0 * std::max(0.0, off - 0.8) +
+         50.0 * report.Flipped + 5.0 * std::max(0, report.MaxValence - 6);
 }
 
 Result<LayoutDraft> parametrizedLayout(const TriangleSurface& s, const ReferenceSurface& reference,
-  int quads, int seed, Monitor& monitor)
+  const Sizing& sizing, int quads, int seed, Monitor& monitor)
 {
-  const double area = s.area();
-  const double cell0 = std::sqrt(area / quads);
+  const double cell0 = sizing.cellFor(quads);
   TriangleSurface fine = s;
   SubMonitor remeshing(monitor, 0.0, 0.3);
-  const double edge = cell0 * std::sqrt(4.0 / std::sqrt(3.0) / TrianglesPerQuad);
-  if (Status status = remesh(fine, reference, edge, 5, remeshing); !status)
+  const double edge = std::sqrt(4.0 / std::sqrt(3.0) / TrianglesPerQuad);
+  const auto length = [&](const Vec3& p) { return edge * sizing.side(p, cell0); };
+  if (Status status = remesh(fine, reference, length, 5, remeshing); !status)
   {
     return status;
   }
@@ -68,7 +105,7 @@ Result<LayoutDraft> parametrizedLayout(const TriangleSurface& s, const Reference
   LayoutDraft best;
   double bestCost = std::numeric_limits<double>::infinity();
   const std::array<double, 3> curvature = {1.0, 0.2, 5.0};
-  for (std::size_t i = 0; i < curvature.size(); ++i)
+  for (std::size_t i = 0; i < curvature.size() && bestCost > GoodCost; ++i)
   {
     monitor.progress(0.3 + 0.7 * i / curvature.size());
     CrossFieldOptions options;
@@ -76,13 +113,13 @@ Result<LayoutDraft> parametrizedLayout(const TriangleSurface& s, const Reference
     options.Curvature = curvature[(i + static_cast<std::size_t>(std::abs(seed))) % 3];
     const CrossField field = crossField(fine, inside, options);
     double cell = cell0;
-    for (int attempt = 0; attempt < 2; ++attempt)
+    for (int attempt = 0; attempt < 3; ++attempt)
     {
       if (monitor.cancelled())
       {
         return Status::cancelled();
       }
-      LayoutDraft draft = tryField(fine, field, cell, euler);
+      LayoutDraft draft = tryField(fine, field, cellsOf(fine, sizing, cell), euler);
       const auto got = static_cast<int>(draft.Mesh.Quads.size());
       if (got == 0)
       {
@@ -95,7 +132,7 @@ Result<LayoutDraft> parametrizedLayout(const TriangleSurface& s, const Reference
         return status;
       }
       const LayoutReport report = checkLayout(draft.Mesh);
-      const double cost = layoutCost(report, quads, got);
+      const double cost = layoutCost(draft, report, s, reference, quads);
       if (cost < bestCost)
       {
         bestCost = cost;

@@ -3,6 +3,7 @@
 #include "Common/Monitor.h"
 #include "Common/Status.h"
 #include "Layout/LayoutDraft.h"
+#include "Layout/Sizing.h"
 
 namespace bsr
 {
@@ -13,8 +14,9 @@ namespace bsr
  * another road must be taken (that is not an error).
  */
 Result<LayoutDraft> parametrizedLayout(const TriangleSurface& s, const ReferenceSurface& reference,
-  int quads, int seed, Monitor& monitor);
+  const Sizing& sizing, int quads, int seed, Monitor& monitor);
 
-/// Small is good: angles, count, irregular vertices, bad quads, distance.
-double layoutCost(const LayoutReport& report, int wanted, int got);
+/// Small is good: angles, count, irregular vertices, bad quads, distance to the surface.
+double layoutCost(const LayoutDraft& draft, const LayoutReport& report, const TriangleSurface& s,
+  const ReferenceSurface& reference, int wanted);
 } // namespace bsr

@@ -13,6 +13,7 @@ namespace bsr
 namespace
 {
 constexpr int MostQuads = 200000;
+constexpr double PoorCost = 25.0; ///< of a map's layout: the other road may do better
 
 Status checkOptions(const QuadRemeshOptions& o)
 {
@@ -28,21 +29,41 @@ Status checkOptions(const QuadRemeshOptions& o)
   return Status::ok();
 }
 
+/// Bending of the surface, measured on triangles of a fifth of a quad.
+Result<Sizing> sizingOf(
+  TriangleSurface s, const ReferenceSurface& reference, int quads, Monitor& monitor)
+{
+  const double cell = std::sqrt(s.area() / quads);
+  Monitor quiet;
+  if (monitor.cancelled())
+  {
+    return Status::cancelled();
+  }
+  if (Status status = remesh(
+        s, reference, [&](const Vec3&) { return 0.2 * cell; }, 3, quiet);
+      !status)
+  {
+    return status;
+  }
+  return Sizing(s, cell);
+}
+
 /// The layout of one component, by the fallback: pairs of triangles give four quads each, so half
 /// as many triangles as quads are wanted; the edge length is corrected until the count fits.
-Result<LayoutDraft> pairedLayout(
-  const TriangleSurface& s, const ReferenceSurface& reference, int quads, Monitor& monitor)
+Result<LayoutDraft> pairedLayout(const TriangleSurface& s, const ReferenceSurface& reference,
+  const Sizing& sizing, int quads, Monitor& monitor)
 {
   constexpr int tries = 5;
-  const double triangle = s.area() / (0.5 * quads);
-  double edge = std::sqrt(4.0 / std::sqrt(3.0) * triangle);
+  double cell = sizing.cellFor(quads);
   LayoutDraft best;
   double bestMiss = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < tries && bestMiss > 0.05; ++i)
+  for (int i = 0; i < tries && bestMiss > 0.06; ++i)
   {
     SubMonitor part(monitor, 0.5 * i / tries, 0.5 * (i + 1) / tries);
     TriangleSurface coarse = s;
-    if (Status status = remesh(coarse, reference, edge, 8, part); !status)
+    const double edge = std::sqrt(8.0 / std::sqrt(3.0));
+    const auto length = [&](const Vec3& p) { return edge * sizing.side(p, cell); };
+    if (Status status = remesh(coarse, reference, length, 8, part); !status)
     {
       return status;
     }
@@ -54,12 +75,58 @@ Result<LayoutDraft> pairedLayout(
       bestMiss = miss;
       best = std::move(draft);
     }
-    edge *= std::clamp(std::sqrt(ratio), 0.6, 1.6);
+    if (ratio > 3.0 && i > 0)
+    {
+      break; // the topology needs so many
+    }
+    cell *= std::clamp(std::sqrt(ratio), 0.6, 1.6);
   }
   SubMonitor second(monitor, 0.5, 1.0);
   if (Status status = relaxLayout(best, reference, 40, second); !status)
   {
     return status;
+  }
+  return best;
+}
+
+/// The better of the two roads; the second is taken where the first gave nothing good.
+Result<LayoutDraft> bestLayout(const TriangleSurface& s, const ReferenceSurface& reference,
+  const Sizing& sizing, int quads, int seed, LayoutStage& stage, Monitor& monitor)
+{
+  LayoutDraft best;
+  double cost = std::numeric_limits<double>::infinity();
+  // Many handles on few quads leave no room for a map.
+  if (-6 * s.eulerCharacteristic() < quads)
+  {
+    SubMonitor first(monitor, 0.0, 0.7);
+    auto draft = parametrizedLayout(s, reference, sizing, quads, seed, first);
+    if (!draft)
+    {
+      return draft;
+    }
+    best = std::move(*draft);
+    if (!best.Mesh.Quads.empty())
+    {
+      cost = layoutCost(best, checkLayout(best.Mesh), s, reference, quads);
+    }
+  }
+  stage = LayoutStage::Parametrized;
+  if (cost < PoorCost)
+  {
+    return best;
+  }
+  SubMonitor second(monitor, 0.7, 1.0);
+  auto draft = pairedLayout(s, reference, sizing, quads, second);
+  if (!draft)
+  {
+    return draft;
+  }
+  const LayoutReport report = checkLayout(draft->Mesh);
+  const bool valid = report.Valid && report.Euler == s.eulerCharacteristic();
+  if (best.Mesh.Quads.empty() || (valid && layoutCost(*draft, report, s, reference, quads) < cost))
+  {
+    stage = LayoutStage::Paired;
+    return draft;
   }
   return best;
 }
@@ -113,13 +180,13 @@ Result<QuadLayout> quadRemesh(
     }
     const ReferenceSurface reference(s);
     SubMonitor laying(part, 0.5, 0.95);
-    LayoutStage stage = LayoutStage::Parametrized;
-    auto draft = parametrizedLayout(s, reference, quads, options.Seed, laying);
-    if (draft && draft->Mesh.Quads.empty())
+    auto sizing = sizingOf(s, reference, quads, monitor);
+    if (!sizing)
     {
-      stage = LayoutStage::Paired;
-      draft = pairedLayout(s, reference, quads, laying);
+      return sizing.status();
     }
+    LayoutStage stage = LayoutStage::Parametrized;
+    auto draft = bestLayout(s, reference, *sizing, quads, options.Seed, stage, laying);
     if (!draft)
     {
       return draft.status();

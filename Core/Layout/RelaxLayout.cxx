@@ -19,23 +19,19 @@ public:
   Relaxer(LayoutDraft& draft, const ReferenceSurface& reference)
       : Draft(draft), Reference(reference), Around(draft.Mesh.Points.size())
   {
-    double sum = 0.0;
     for (std::size_t q = 0; q < draft.Mesh.Quads.size(); ++q)
     {
       for (int k = 0; k < 4; ++k)
       {
         this->Around[draft.Mesh.Quads[q][k]].push_back({static_cast<Index>(q), k});
       }
-      const auto& c = draft.Mesh.Quads[q];
-      const auto& p = draft.Mesh.Points;
-      sum += std::sqrt(0.5 * (p[c[2]] - p[c[0]]).cross(p[c[3]] - p[c[1]]).norm());
     }
-    this->Side = sum / static_cast<double>(std::max<std::size_t>(draft.Mesh.Quads.size(), 1));
   }
 
   /// One step of every vertex towards the rectangles its quads ask for.
   void relaxOnce(double share)
   {
+    this->measure();
     std::vector<std::array<Vec3, 4>> asked(this->Draft.Mesh.Quads.size());
     parallelFor(0, static_cast<std::int64_t>(asked.size()), 256,
       [&](std::int64_t first, std::int64_t last)
@@ -93,6 +89,32 @@ private:
     int At;
   };
 
+  /// Side of each quad, averaged over those around it.
+  void measure()
+  {
+    const auto& p = this->Draft.Mesh.Points;
+    const auto& quads = this->Draft.Mesh.Quads;
+    std::vector<double> own(quads.size());
+    for (std::size_t q = 0; q < quads.size(); ++q)
+    {
+      const auto& c = quads[q];
+      own[q] = std::sqrt(0.5 * (p[c[2]] - p[c[0]]).cross(p[c[3]] - p[c[1]]).norm());
+    }
+    this->Side.assign(quads.size(), 0.0);
+    for (const auto& around : this->Around)
+    {
+      double mean = 0.0;
+      for (const Corner& c : around)
+      {
+        mean += own[c.Quad] / static_cast<double>(around.size());
+      }
+      for (const Corner& c : around)
+      {
+        this->Side[c.Quad] += 0.25 * mean;
+      }
+    }
+  }
+
   std::array<Vec3, 4> rectangle(Index quad) const
   {
     const auto& q = this->Draft.Mesh.Quads[quad];
@@ -112,8 +134,8 @@ private:
     {
       return p;
     }
-    const double lu = 0.7 * std::abs(axis.dot(u)) + 0.3 * this->Side;
-    const double lv = 0.7 * std::abs(other.dot(v)) + 0.3 * this->Side;
+    const double lu = 0.7 * std::abs(axis.dot(u)) + 0.3 * this->Side[quad];
+    const double lv = 0.7 * std::abs(other.dot(v)) + 0.3 * this->Side[quad];
     const Vec3 a = 0.5 * lu * axis;
     const Vec3 b = 0.5 * lv * other;
     return {center - a - b, center + a - b, center + a + b, center - a + b};
@@ -177,7 +199,7 @@ private:
   LayoutDraft& Draft;
   const ReferenceSurface& Reference;
   std::vector<std::vector<Corner>> Around;
-  double Side = 0.0;
+  std::vector<double> Side; ///< per quad
 };
 } // namespace
 

@@ -13,14 +13,21 @@ namespace
 class Remesher
 {
 public:
-  Remesher(TriangleSurface& s, const ReferenceSurface& reference, double length)
-      : S(s), Reference(reference), Length(length)
+  Remesher(TriangleSurface& s, const ReferenceSurface& reference, const EdgeLength& length)
+      : S(s), Reference(reference), Wanted(s.Points.size())
   {
+    parallelFor(0, s.vertices(), 256,
+      [&](std::int64_t first, std::int64_t last)
+      {
+        for (std::int64_t v = first; v < last; ++v)
+        {
+          this->Wanted[v] = length(s.Points[v]);
+        }
+      });
   }
 
   void splitLong()
   {
-    const double limit = 4.0 / 3.0 * this->Length;
     for (int pass = 0; pass < 12; ++pass)
     {
       bool any = false;
@@ -28,11 +35,13 @@ public:
       for (Index h = 0; h < count; ++h)
       {
         if (this->S.Vertex[h] >= 0 && h < this->S.Opposite[h] && this->real(h) &&
-            this->length(h) > limit && this->longestAround(h))
+            this->relative(h) > 4.0 / 3.0 && this->longestAround(h))
         {
           const Vec3 middle =
             0.5 * (this->S.Points[this->S.start(h)] + this->S.Points[this->S.end(h)]);
+          const double wanted = this->wanted(h);
           this->S.split(h, middle);
+          this->Wanted.push_back(wanted);
           any = true;
         }
       }
@@ -45,11 +54,10 @@ public:
 
   void collapseShort()
   {
-    const double low = 0.8 * this->Length;
     const auto count = static_cast<Index>(this->S.Vertex.size());
     for (Index e = 0; e < count; ++e)
     {
-      if (this->S.Vertex[e] < 0 || !this->real(e) || this->length(e) >= low)
+      if (this->S.Vertex[e] < 0 || !this->real(e) || this->relative(e) >= 0.8)
       {
         continue;
       }
@@ -118,6 +126,11 @@ private:
   {
     return (this->S.Points[this->S.start(h)] - this->S.Points[this->S.end(h)]).norm();
   }
+  double wanted(Index h) const
+  {
+    return 0.5 * (this->Wanted[this->S.start(h)] + this->Wanted[this->S.end(h)]);
+  }
+  double relative(Index h) const { return this->length(h) / this->wanted(h); }
   /// The longest edge of one of its triangles: splitting only those keeps angles sound.
   bool longestAround(Index h) const
   {
@@ -158,7 +171,7 @@ private:
   bool fanFits(Index v, Index other, const Vec3& x) const
   {
     const TriangleSurface& s = this->S;
-    const double limit = 4.0 / 3.0 * this->Length;
+    const double limit = 4.0 / 3.0 * std::min(this->Wanted[v], this->Wanted[other]);
     bool fits = true;
     s.around(v,
       [&](Index h)
@@ -232,7 +245,7 @@ private:
 
   TriangleSurface& S;
   const ReferenceSurface& Reference;
-  double Length;
+  std::vector<double> Wanted; ///< edge length at each vertex
 };
 } // namespace
 
@@ -258,7 +271,7 @@ ReferenceSurface::ReferenceSurface(const TriangleSurface& s)
   this->Creases = TriangleTree(s.Points, std::move(creases));
 }
 
-Status remesh(TriangleSurface& s, const ReferenceSurface& reference, double edgeLength,
+Status remesh(TriangleSurface& s, const ReferenceSurface& reference, const EdgeLength& edgeLength,
   int iterations, Monitor& monitor)
 {
   Status status;

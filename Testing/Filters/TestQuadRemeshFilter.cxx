@@ -1,0 +1,141 @@
+#include "FilterTesting.h"
+#include "RandomShape.h"
+#include "vtkQuadRemesh.h"
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkIntArray.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSphereSource.h>
+#include <vtkXMLPolyDataReader.h>
+
+#include <map>
+#include <set>
+
+using bsrtest::ErrorLog;
+using bsrtest::fieldValue;
+
+namespace
+{
+/// Checks, without the code under test, that a mesh is closed, oriented, of quads, without
+/// doublets.
+void expectClosedQuads(vtkPolyData* mesh)
+{
+  std::map<std::pair<vtkIdType, vtkIdType>, int> directed;
+  std::map<vtkIdType, int> quadsAt;
+  std::set<std::set<vtkIdType>> corners;
+  for (vtkIdType q = 0; q < mesh->GetNumberOfCells(); ++q)
+  {
+    vtkIdType n = 0;
+    const vtkIdType* ids = nullptr;
+    mesh->GetPolys()->GetCellAtId(q, n, ids);
+    ASSERT_EQ(n, 4);
+    corners.insert(std::set<vtkIdType>(ids, ids + 4));
+    for (int k = 0; k < 4; ++k)
+    {
+      EXPECT_EQ(++(directed[{ids[k], ids[(k + 1) % 4]}]), 1);
+      ++quadsAt[ids[k]];
+    }
+  }
+  EXPECT_EQ(static_cast<vtkIdType>(corners.size()), mesh->GetNumberOfCells());
+  for (const auto& e : directed)
+  {
+    EXPECT_TRUE(directed.count({e.first.second, e.first.first}));
+  }
+  for (const auto& v : quadsAt)
+  {
+    EXPECT_GE(v.second, 3);
+    EXPECT_LE(v.second, 8);
+  }
+  EXPECT_EQ(static_cast<vtkIdType>(quadsAt.size()), mesh->GetNumberOfPoints());
+}
+} // namespace
+
+TEST(QuadRemeshFilter, RandomShapes)
+{
+  for (unsigned seed = 1; seed <= 5; ++seed)
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const auto surface = bsrtest::randomShape(seed, 48);
+    vtkNew<vtkQuadRemesh> remesh;
+    remesh->SetInputData(surface);
+    remesh->SetNumberOfQuads(150 + 40 * static_cast<int>(seed));
+    ErrorLog log(remesh);
+    remesh->Update();
+    ASSERT_TRUE(log.empty()) << log.text();
+    vtkPolyData* out = remesh->GetOutput();
+    expectClosedQuads(out);
+    EXPECT_EQ(fieldValue(out, "EulerCharacteristic"), bsrtest::eulerOfClosed(surface));
+    EXPECT_GT(fieldValue(out, "MinScaledJacobian"), 0.0);
+  }
+}
+
+TEST(QuadRemeshFilter, AddsItsArrays)
+{
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetThetaResolution(80);
+  sphere->SetPhiResolution(60);
+  vtkNew<vtkQuadRemesh> remesh;
+  remesh->SetInputConnection(sphere->GetOutputPort());
+  remesh->SetNumberOfQuads(120);
+  remesh->Update();
+  vtkPolyData* out = remesh->GetOutput();
+  expectClosedQuads(out);
+  EXPECT_NEAR(out->GetNumberOfCells(), 120, 15);
+  EXPECT_TRUE(out->GetCellData()->GetArray("ScaledJacobian"));
+  EXPECT_TRUE(out->GetPointData()->GetArray("Valence"));
+  EXPECT_FALSE(out->GetCellData()->GetArray("EndRegion"));
+  EXPECT_GE(fieldValue(out, "Irregular"), 8);
+  EXPECT_EQ(fieldValue(out, "EulerCharacteristic"), 2);
+  EXPECT_LT(fieldValue(out, "Hausdorff"), 0.1);
+}
+
+TEST(QuadRemeshFilter, SaysWhatIsWrong)
+{
+  vtkNew<vtkQuadRemesh> remesh;
+  ErrorLog log(remesh);
+  vtkNew<vtkPolyData> empty;
+  remesh->SetInputData(empty);
+  remesh->Update();
+  EXPECT_TRUE(log.saidOnce("no triangles")) << log.text();
+  EXPECT_EQ(remesh->GetOutput()->GetNumberOfCells(), 0);
+  log.clear();
+  vtkNew<vtkPolyData> quad;
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> polys;
+  for (int i = 0; i < 4; ++i)
+  {
+    points->InsertNextPoint(i / 2, i % 2, 0);
+  }
+  polys->InsertNextCell({0, 1, 3, 2});
+  quad->SetPoints(points);
+  quad->SetPolys(polys);
+  remesh->SetInputData(quad);
+  remesh->Update();
+  EXPECT_TRUE(log.saidOnce("Triangulate")) << log.text();
+}
+
+TEST(QuadRemeshFilter, ScansOfSharedData)
+{
+  const std::map<std::string, double> shapes = {{"tubeS", 2}, {"rocker-arm", 0}};
+  for (const auto& [name, euler] : shapes)
+  {
+    const std::string path = "../shared/data/" + name + ".vtp";
+    if (!std::ifstream(path))
+    {
+      GTEST_SKIP() << path << " is absent";
+    }
+    vtkNew<vtkXMLPolyDataReader> reader;
+    reader->SetFileName(path.c_str());
+    vtkNew<vtkQuadRemesh> remesh;
+    remesh->SetInputConnection(reader->GetOutputPort());
+    remesh->SetNumberOfQuads(300);
+    remesh->Update();
+    expectClosedQuads(remesh->GetOutput());
+    EXPECT_EQ(fieldValue(remesh->GetOutput(), "EulerCharacteristic"), euler);
+    EXPECT_GT(fieldValue(remesh->GetOutput(), "MinScaledJacobian"), 0.3);
+    EXPECT_LT(fieldValue(remesh->GetOutput(), "MeanAngleDeviation"), 10);
+  }
+}
