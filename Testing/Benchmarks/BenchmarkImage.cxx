@@ -66,9 +66,15 @@ void closing(benchmark::State& state)
 }
 } // namespace
 
-BENCHMARK(distanceTransform)->Arg(256)->Arg(512)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(distanceTransform)
+  ->Arg(256)
+  ->Arg(512)
+  ->Unit(benchmark::kMillisecond)
+  ->MeasureProcessCPUTime()
+  ->UseRealTime();
 BENCHMARK(closing)
   ->ArgsProduct({{256, 512}, {5, 10, 20, 40}})
   ->Unit(benchmark::kMillisecond)
+  ->MeasureProcessCPUTime()
   ->UseRealTime();
 BENCHMARK_MAIN();
