@@ -4,6 +4,19 @@
 
 namespace bsr
 {
+namespace
+{
+Eigen::MatrixXd patchNet(const PatchNet& net, const NetPoints& points, Index patch)
+{
+  Eigen::MatrixXd own(net.perPatch(), 3);
+  for (int l = 0; l < net.perPatch(); ++l)
+  {
+    own.row(l) = points.row(net.at(patch, l));
+  }
+  return own;
+}
+} // namespace
+
 PatchBlocks FitEquations::blocks(const PatchNet& net, double lambda, double dataWeight) const
 {
   const double data =
@@ -16,16 +29,16 @@ PatchBlocks FitEquations::blocks(const PatchNet& net, double lambda, double data
     b.Right[p] = data * this->Data.Right[p];
     const double fairing = lambda * this->Stiffness[p];
     const auto [a, c] = this->Aspect[p];
-    b.Matrix[p] += fairing * this->Energies.thinPlate(a, c);
+    const Eigen::MatrixXd stiffness = fairing * this->Energies.thinPlate(a, c);
+    b.Matrix[p] += stiffness;
+    if (this->RestShape.rows() > 0)
+    {
+      b.Right[p] += stiffness * patchNet(net, this->RestShape, p);
+    }
     if (this->Pull[p] > 0.0)
     {
-      Eigen::MatrixXd reference(net.perPatch(), 3);
-      for (int l = 0; l < net.perPatch(); ++l)
-      {
-        reference.row(l) = this->Reference.row(net.at(p, l));
-      }
       b.Matrix[p] += this->Pull[p] * this->Energies.Mass;
-      b.Right[p] += this->Pull[p] * (this->Energies.Mass * reference);
+      b.Right[p] += this->Pull[p] * (this->Energies.Mass * patchNet(net, this->Reference, p));
     }
   };
   parallelFor(0, net.patches(), 8,

@@ -18,6 +18,8 @@ struct FitEquations
   std::vector<double> Stiffness;             ///< factor on the fairing of each patch
   std::vector<double> Pull;                  ///< strength of the pull to Reference, a patch
   NetPoints Reference;
+  /// Fairing acts on the difference to this net, where given (empty: on the surface itself).
+  NetPoints RestShape;
 
   PatchBlocks blocks(const PatchNet& net, double lambda, double dataWeight) const;
 };

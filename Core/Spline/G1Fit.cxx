@@ -128,7 +128,7 @@ public:
       return whole.status();
     }
     this->Cut = cutEnds(this->Full,
-      this->Options.Ends == OpenEnds::Automatic ? markByRegion(this->Full) : std::vector<char>());
+      this->Options.Ends == OpenEnds::Automatic ? this->Full.Region : std::vector<Index>());
     auto complex =
       QuadComplex::build(this->Cut.Quads.Quads, static_cast<Index>(this->Full.Points.size()));
     if (!complex)
@@ -166,8 +166,14 @@ private:
           " quads; give at least four a quad on average, or a layout of fewer quads.");
       }
       SubMonitor part(this->Watch, 0.45 * side, 0.45 * (side + 1));
+      ShellFitOptions shellOptions = this->shellOptions();
+      if (side == 1)
+      {
+        // Where the lumen's wall has few points it follows the outer wall.
+        shellOptions.RestShape = &shells[0].Net;
+      }
       auto fit = fitShell(layout, *solver, std::move(points),
-        rimSamples(complex, this->Full.Points, true), this->shellOptions(), part);
+        rimSamples(complex, this->Full.Points, true), shellOptions, part);
       if (!fit)
       {
         return fit.status();

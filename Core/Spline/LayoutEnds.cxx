@@ -1,6 +1,6 @@
 #include "Spline/LayoutEnds.h"
 
-#include <numeric>
+#include <map>
 
 namespace bsr
 {
@@ -23,49 +23,55 @@ CutLayout without(const QuadMesh& quads, const std::vector<char>& marked)
   return cut;
 }
 
-/// Groups of marked quads joined by edges; -1 for the others.
-std::pair<std::vector<int>, int> groupsOf(
-  const QuadComplex& complex, const std::vector<char>& marked)
+/// The quads of a region that are joined with quad f by edges.
+std::vector<Index> groupAround(
+  const QuadComplex& complex, const std::vector<Index>& region, Index f, std::vector<char>& visited)
 {
-  std::vector<int> group(complex.faces(), -1);
-  int groups = 0;
-  for (Index f = 0; f < complex.faces(); ++f)
+  std::vector<Index> group{f};
+  visited[f] = 1;
+  for (std::size_t i = 0; i < group.size(); ++i)
   {
-    if (!marked[f] || group[f] >= 0)
+    for (int k = 0; k < 4; ++k)
     {
-      continue;
-    }
-    std::vector<Index> stack{f};
-    group[f] = groups;
-    while (!stack.empty())
-    {
-      const Index g = stack.back();
-      stack.pop_back();
-      for (int k = 0; k < 4; ++k)
+      const Index t = complex.twin(4 * group[i] + k);
+      if (t >= 0 && !visited[t / 4] && region[t / 4] == region[f])
       {
-        const Index t = complex.twin(4 * g + k);
-        if (t >= 0 && marked[t / 4] && group[t / 4] < 0)
-        {
-          group[t / 4] = groups;
-          stack.push_back(t / 4);
-        }
+        visited[t / 4] = 1;
+        group.push_back(t / 4);
       }
     }
-    ++groups;
   }
-  return {group, groups};
+  return group;
+}
+
+/// The largest group of each region > 0.
+std::map<Index, std::vector<Index>> largestGroups(
+  const QuadComplex& complex, const std::vector<Index>& region)
+{
+  std::map<Index, std::vector<Index>> largest;
+  std::vector<char> visited(complex.faces(), 0);
+  for (Index f = 0; f < complex.faces(); ++f)
+  {
+    if (region[f] > 0 && !visited[f])
+    {
+      auto group = groupAround(complex, region, f, visited);
+      auto& best = largest[region[f]];
+      if (group.size() > best.size())
+      {
+        best = std::move(group);
+      }
+    }
+  }
+  return largest;
 }
 
 /// Euler characteristic 1 and one border loop.
-bool isDisc(const QuadMesh& quads, const std::vector<int>& group, int g)
+bool isDisc(const QuadMesh& quads, const std::vector<Index>& group)
 {
   std::vector<std::array<Index, 4>> own;
-  for (std::size_t f = 0; f < group.size(); ++f)
+  for (const Index f : group)
   {
-    if (group[f] == g)
-    {
-      own.push_back(quads.Quads[f]);
-    }
+    own.push_back(quads.Quads[f]);
   }
   const auto c = QuadComplex::build(own, static_cast<Index>(quads.Points.size()));
   return c && c->eulerCharacteristic() == 1 && c->borderLoops().size() == 1;
@@ -86,31 +92,31 @@ Vec3 hermite(const Vec3& a, const Vec3& ta, const Vec3& b, const Vec3& tb, doubl
 }
 } // namespace
 
-CutLayout cutEnds(const QuadMesh& quads, const std::vector<char>& marked)
+CutLayout cutEnds(const QuadMesh& quads, const std::vector<Index>& region)
 {
-  const auto full = QuadComplex::build(quads.Quads, static_cast<Index>(quads.Points.size()));
-  if (marked.empty() || !full)
-  {
-    return without(quads, {});
-  }
-  const auto [group, groups] = groupsOf(*full, marked);
-  std::vector<char> removed(marked.size(), 0);
   CutLayout cut = without(quads, {});
+  const auto full = QuadComplex::build(quads.Quads, static_cast<Index>(quads.Points.size()));
+  if (region.size() != quads.Quads.size() || !full)
+  {
+    return cut;
+  }
+  std::vector<char> removed(region.size(), 0);
   std::string message;
-  for (int g = 0; g < groups; ++g)
+  for (const auto& [id, group] : largestGroups(*full, region))
   {
     std::vector<char> attempt = removed;
-    for (std::size_t f = 0; f < group.size(); ++f)
+    for (const Index f : group)
     {
-      attempt[f] = attempt[f] || group[f] == g;
+      attempt[f] = 1;
     }
     CutLayout next = without(quads, attempt);
     const bool sound =
-      isDisc(quads, group, g) && !next.Quads.Quads.empty() &&
+      isDisc(quads, group) && !next.Quads.Quads.empty() &&
       QuadComplex::build(next.Quads.Quads, static_cast<Index>(quads.Points.size())).isOk();
     if (!sound)
     {
-      message = "An end was kept closed: its cap is not a disc of quads bounded by one loop.";
+      message = "End " + std::to_string(id) +
+                " was kept closed: its cap is not a disc of quads bounded by one loop.";
       continue;
     }
     next.Ends = cut.Ends + 1;
@@ -119,17 +125,6 @@ CutLayout cutEnds(const QuadMesh& quads, const std::vector<char>& marked)
   }
   cut.Message = message;
   return cut;
-}
-
-std::vector<char> markByRegion(const QuadMesh& quads)
-{
-  std::vector<char> marked(quads.Region.size(), 0);
-  for (std::size_t f = 0; f < quads.Region.size(); ++f)
-  {
-    marked[f] = quads.Region[f] > 0 ? 1 : 0;
-  }
-  const bool any = std::accumulate(marked.begin(), marked.end(), 0) > 0;
-  return any ? marked : std::vector<char>();
 }
 
 std::vector<RimSample> rimSamples(

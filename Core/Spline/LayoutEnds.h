@@ -16,14 +16,11 @@ struct CutLayout
 };
 
 /**
- * Removes the quads marked as caps (nonzero) where that leaves a sound open surface: each group of
- * marked quads a disc, borders simple loops, no other component or vertex torn; groups that fail
- * are kept, and the message says so.
+ * Removes the caps of open ends: of each region > 0 its largest connected group of quads, where that
+ * leaves a sound open surface: the group a disc, borders simple loops, no other component or
+ * vertex torn. Groups that fail are kept, and the message says so. An empty list: nothing to remove.
  */
-CutLayout cutEnds(const QuadMesh& quads, const std::vector<char>& marked);
-
-/// Marks by Region > 0; empty where the layout has no such quads.
-std::vector<char> markByRegion(const QuadMesh& quads);
+CutLayout cutEnds(const QuadMesh& quads, const std::vector<Index>& region);
 
 /**
  * Samples of the ends' rims: smooth closed curves through the border's vertices, eight samples a

@@ -29,6 +29,10 @@ public:
     this->Equations.Aspect = patchAspects(this->Complex, *layout.Vertices);
     this->Equations.Stiffness.assign(this->Net.patches(), 1.0);
     this->Equations.Pull.assign(this->Net.patches(), 0.0);
+    if (options.RestShape)
+    {
+      this->Equations.RestShape = *options.RestShape;
+    }
     this->PatchSize = meanSize(*layout.Vertices);
   }
 
@@ -192,65 +196,100 @@ private:
     {
       return scores.status();
     }
-    if (std::getenv("BSR_TRACE"))
-    {
-      for (const auto& s : *scores)
-      {
-        std::fprintf(stderr, "  K %g cv %g\n", s.DataWeight, s.Error);
-      }
-    }
     return Status::ok();
   }
 
-  /// Fairs folded patches and their neighbors more and more until none is folded.
+  /// The patches that are folded; keeps their number.
+  std::vector<Index> foldedPatches()
+  {
+    const auto shapes = checkShapes(this->Net, this->Surface);
+    std::vector<Index> folded;
+    for (Index f = 0; f < this->Net.patches(); ++f)
+    {
+      if (shapes[f].Folded)
+      {
+        folded.push_back(f);
+      }
+    }
+    this->Result_.Folded = static_cast<int>(folded.size());
+    return folded;
+  }
+
+  /// First fairs folded patches and their neighbors more, then pulls them to a smooth reference,
+  /// both stronger from round to round, until none is folded. Parameters and weights stay.
   Status unfold(double lambda)
   {
-    std::vector<char> touched(this->Net.patches(), 0);
-    for (int round = 0; round < 12; ++round)
+    constexpr int FairingRounds = 4;
+    constexpr int Rounds = 14;
+    std::vector<Index> folded = this->foldedPatches();
+    this->Result_.Unfolded = this->Result_.Folded;
+    for (int round = 0; round < Rounds && !folded.empty(); ++round)
     {
-      const auto shapes = checkShapes(this->Net, this->Surface);
-      std::vector<double> factor(this->Net.patches(), 1.0);
-      this->Result_.Folded = 0;
-      for (Index f = 0; f < this->Net.patches(); ++f)
+      if (round == FairingRounds)
       {
-        if (shapes[f].Folded)
+        if (Status s = this->findReference(); !s)
         {
-          ++this->Result_.Folded;
-          touched[f] = 1;
-          this->stiffen(f, factor);
+          return s;
         }
       }
-      if (std::getenv("BSR_TRACE"))
+      for (const Index f : folded)
       {
-        std::fprintf(stderr, "  round %d folded %d\n", round, this->Result_.Folded);
+        round < FairingRounds ? this->stiffen(f) : this->pull(f);
       }
-      if (this->Result_.Folded == 0)
-      {
-        break;
-      }
-      for (Index f = 0; f < this->Net.patches(); ++f)
-      {
-        this->Equations.Stiffness[f] *= factor[f];
-      }
-      if (Status s = this->pass(lambda, 4.685); !s)
+      if (Status s = this->solve(lambda); !s)
       {
         return s;
       }
+      folded = this->foldedPatches();
     }
-    this->Result_.Unfolded = static_cast<int>(std::count(touched.begin(), touched.end(), 1));
     return Status::ok();
   }
 
-  void stiffen(Index f, std::vector<double>& factor) const
+  /// Faces of a patch's neighborhood by corners, each once.
+  std::vector<Index> ring(Index f) const
   {
+    std::vector<Index> faces;
     for (const Index v : this->Complex.quad(f))
     {
       for (const Index h : this->Complex.fan(v).HalfEdges)
       {
-        factor[h / 4] = std::max(factor[h / 4], 3.0);
+        faces.push_back(h / 4);
       }
     }
-    factor[f] = 8.0;
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    return faces;
+  }
+
+  void stiffen(Index f)
+  {
+    for (const Index g : this->ring(f))
+    {
+      double& s = this->Equations.Stiffness[g];
+      s = std::min(s * (g == f ? 6.0 : 2.0), 1e3);
+    }
+  }
+
+  void pull(Index f)
+  {
+    for (const Index g : this->ring(f))
+    {
+      double& s = this->Equations.Pull[g];
+      s = std::min(std::max(s * (g == f ? 4.0 : 2.0), 0.3 * this->K), 1e4 * this->K);
+    }
+  }
+
+  /// A surface that follows the data only roughly: it is the smoothest that lies where they lie.
+  Status findReference()
+  {
+    this->assemble();
+    auto net = this->Solver.solve(this->Equations.blocks(this->Net, 0.9, std::min(this->K, 10.0)));
+    if (!net)
+    {
+      return net.status();
+    }
+    this->Equations.Reference = std::move(*net);
+    return Status::ok();
   }
 
   const QuadComplex& Complex;

@@ -24,6 +24,8 @@ struct ShellFitOptions
   bool Robust = true;      ///< weigh outliers down (Tukey)
   bool Reassign = true;    ///< points may move on to neighboring patches
   int ExtraPasses = 2;     ///< repetitions of the last pass
+  /// Where given, fairing acts on the difference to this net: a shell whose shape this one shares.
+  const NetPoints* RestShape = nullptr;
 };
 
 struct ShellFitResult
