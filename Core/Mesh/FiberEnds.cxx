@@ -17,6 +17,9 @@ namespace
 constexpr int Bins = 72;             ///< directions around the axis
 constexpr double WindowHeight = 1.0; ///< of the mouth's radius, up and down the axis
 constexpr double WindowRadius = 2.6; ///< of the mouth's radius
+constexpr double MostLoss = 0.4;     ///< of the mouth's radius: how far within the outermost
+constexpr double Stiffness = 0.3;    ///< of the rim against jumps
+constexpr int Smoothing = 3;         ///< rounds on the function that is cut
 constexpr double MostTilt = 0.7;     ///< cosine between mouth and rim plane at least
 constexpr double Snap = 0.2;         ///< of an edge
 constexpr double Pi = 3.14159265358979323846;
@@ -103,12 +106,20 @@ struct Rim
   }
 };
 
-/// The outermost points under 45 degrees; nothing when directions are missing.
-std::optional<Rim> searchRim(const TriangleMesh& mesh, const Frame& frame, double radius)
+/// A point of the surface where the rim may pass, in the frame's coordinates.
+struct Candidate
 {
-  Profile best;
-  best.fill(-std::numeric_limits<double>::infinity());
-  Rim rim;
+  double Radius;
+  double Height;
+  double Loss; ///< how much less far out it lies than the outermost of its direction
+};
+
+using Candidates = std::array<std::vector<Candidate>, Bins>;
+
+/// The outermost points of each direction, `lean` weighing radius against height.
+Candidates rimCandidates(const TriangleMesh& mesh, const Frame& frame, double radius, double lean)
+{
+  Candidates candidates;
   const double reach = std::hypot(WindowHeight, WindowRadius) * radius;
   for (const Vec3& p : mesh.Points)
   {
@@ -118,29 +129,88 @@ std::optional<Rim> searchRim(const TriangleMesh& mesh, const Frame& frame, doubl
     }
     const double h = frame.height(p);
     const double r = frame.radius(p);
-    if (std::abs(h) > WindowHeight * radius || r > WindowRadius * radius)
+    if (std::abs(h) <= WindowHeight * radius && r <= WindowRadius * radius)
     {
-      continue;
-    }
-    const int b = std::min(static_cast<int>(frame.bin(p)), Bins - 1);
-    if (r + h > best[b])
-    {
-      best[b] = r + h;
-      rim.Radius[b] = r;
-      rim.Height[b] = h;
+      const int b = std::min(static_cast<int>(frame.bin(p)), Bins - 1);
+      candidates[b].push_back({r, h, -(lean * r + h)});
     }
   }
-  for (int b = 0; b < Bins; ++b)
+  for (auto& list : candidates)
   {
-    if (!std::isfinite(best[b]))
+    std::sort(list.begin(), list.end(),
+      [](const Candidate& x, const Candidate& y)
+      { return x.Loss != y.Loss ? x.Loss < y.Loss : x.Radius < y.Radius; });
+    const double best = list.empty() ? 0.0 : list.front().Loss;
+    std::vector<Candidate> kept;
+    for (Candidate c : list)
     {
-      if (!std::isfinite(ring(best, b - 1)))
+      c.Loss -= best;
+      const bool apart = kept.empty() || c.Loss - kept.back().Loss > 0.004 * radius;
+      if (c.Loss <= MostLoss * radius && apart)
       {
-        return std::nullopt;
+        kept.push_back(c);
       }
-      rim.Radius[b] = ring(rim.Radius, b - 1);
-      rim.Height[b] = ring(rim.Height, b - 1);
     }
+    list = std::move(kept);
+  }
+  return candidates;
+}
+
+/// The closed sequence of candidates with the least losses and jumps: dynamic programming, twice
+/// around, of which the middle turn is taken.
+std::optional<Rim> searchRim(
+  const TriangleMesh& mesh, const Frame& frame, double radius, double lean)
+{
+  Candidates candidates = rimCandidates(mesh, frame, radius, lean);
+  int missing = 0;
+  for (int i = 0; i < 2 * Bins; ++i)
+  {
+    auto& list = candidates[i % Bins];
+    if (list.empty())
+    {
+      missing += i < Bins;
+      list = ring(candidates, i - 1);
+    }
+  }
+  if (missing > Bins / 8 || candidates[0].empty())
+  {
+    return std::nullopt;
+  }
+  constexpr int Turns = 3;
+  std::vector<std::vector<int>> from(Turns * Bins);
+  std::vector<double> cost(candidates[0].size(), 0.0);
+  const double arc = 2.0 * Pi * radius / Bins;
+  for (int i = 1; i < Turns * Bins; ++i)
+  {
+    const auto& before = ring(candidates, i - 1);
+    const auto& here = ring(candidates, i);
+    std::vector<double> next(here.size());
+    from[i].resize(here.size());
+    for (std::size_t c = 0; c < here.size(); ++c)
+    {
+      next[c] = std::numeric_limits<double>::infinity();
+      for (std::size_t d = 0; d < before.size(); ++d)
+      {
+        const double dr = here[c].Radius - before[d].Radius;
+        const double dh = here[c].Height - before[d].Height;
+        const double total = cost[d] + Stiffness * (dr * dr + dh * dh) / arc;
+        if (total < next[c])
+        {
+          next[c] = total;
+          from[i][c] = static_cast<int>(d);
+        }
+      }
+      next[c] += here[c].Loss;
+    }
+    cost = std::move(next);
+  }
+  auto at = static_cast<int>(std::min_element(cost.begin(), cost.end()) - cost.begin());
+  Rim rim;
+  for (int i = Turns * Bins - 1; i >= Bins; --i)
+  {
+    rim.Radius[i % Bins] = ring(candidates, i)[at].Radius;
+    rim.Height[i % Bins] = ring(candidates, i)[at].Height;
+    at = from[i][at];
   }
   rim.Radius = smoothed(rim.Radius);
   rim.Height = smoothed(rim.Height);
@@ -226,6 +296,32 @@ Index capVertex(const TriangleMesh& mesh, const Frame& frame, double radius)
   return best;
 }
 
+/// Averages a function over neighbors.
+void smooth(std::vector<double>& value, const std::vector<std::vector<Index>>& neighbors)
+{
+  for (int round = 0; round < Smoothing; ++round)
+  {
+    std::vector<double> next = value;
+    for (std::size_t i = 0; i < value.size(); ++i)
+    {
+      double sum = 0.0;
+      for (const Index n : neighbors[i])
+      {
+        sum += value[n];
+      }
+      if (!neighbors[i].empty())
+      {
+        next[i] = 0.5 * (value[i] + sum / static_cast<double>(neighbors[i].size()));
+      }
+    }
+    value = std::move(next);
+  }
+  for (double& v : value)
+  {
+    v = v == 0.0 ? -1e-12 : v;
+  }
+}
+
 /// The function whose zero level is the rim: made positive in one connected part without holes.
 std::optional<std::vector<double>> endFunction(
   const TriangleMesh& mesh, const Frame& frame, const Rim& rim, double radius)
@@ -244,6 +340,7 @@ std::optional<std::vector<double>> endFunction(
     const bool far = (p - frame.Center).norm() > 2.0 * widest;
     value[i] = far ? -std::max(std::abs(f), 1e-9 * radius) : (f == 0.0 ? 1e-9 * radius : f);
   }
+  smooth(value, neighbors);
   const Index seed = capVertex(mesh, frame, radius);
   if (seed < 0 || value[seed] <= 0.0)
   {
@@ -302,7 +399,7 @@ bool mark(TriangleMesh& mesh, const std::vector<double>& value, Index region)
 }
 
 /// Tries to cut one end; says why not.
-std::string cutEnd(FiberEnds& ends, const EndMouth& mouth)
+std::string cutEnd(FiberEnds& ends, const EndMouth& mouth, double lean)
 {
   if (!(mouth.Radius > 0.0) || !(mouth.Direction.norm() > 0.0) || !mouth.Center.allFinite())
   {
@@ -312,7 +409,7 @@ std::string cutEnd(FiberEnds& ends, const EndMouth& mouth)
   std::optional<Rim> rim;
   for (int round = 0; round < 4; ++round)
   {
-    rim = searchRim(ends.Surface, frame, mouth.Radius);
+    rim = searchRim(ends.Surface, frame, mouth.Radius, lean);
     if (!rim)
     {
       return "the surface does not go round it";
@@ -367,7 +464,11 @@ Result<FiberEnds> findFiberEnds(
     {
       return Status::cancelled();
     }
-    const std::string why = cutEnd(ends, mouths[m]);
+    std::string why = cutEnd(ends, mouths[m], 1.0);
+    for (const double lean : {1.3, 0.75})
+    {
+      why = why.empty() ? why : cutEnd(ends, mouths[m], lean);
+    }
     if (!why.empty())
     {
       ends.Note += (ends.Note.empty() ? "Mouth " : " Mouth ") + std::to_string(m + 1) +
