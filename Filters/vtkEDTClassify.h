@@ -10,7 +10,7 @@
  * Facing Void (the default): from the voxels of the void near and within the object rays are cast;
  * where few escape is the lumen, which is then followed to its open ends. Both walls are estimated
  * smoothly (half of a Gaussian neighborhood is void), and a point belongs to the wall within 1.7
- * voxels (outer) or 1.15 voxels (inner) of it, or to neither.
+ * voxels (outer) or 1.1 voxels (inner) of it, or to neither.
  *
  * Depth (Mosbach et al., section 3, the distance transform of the closed object): inner is what
  * lies deeper below the closed surface than DepthThreshold, all else is outer. Quick, but pits and

@@ -18,7 +18,9 @@ constexpr int Bins = 72;             ///< directions around the axis
 constexpr double WindowHeight = 1.0; ///< of the mouth's radius, up and down the axis
 constexpr double WindowRadius = 2.6; ///< of the mouth's radius
 constexpr double MostLoss = 0.4;     ///< of the mouth's radius: how far within the outermost
-constexpr double Stiffness = 0.3;    ///< of the rim against jumps
+constexpr double Stiffness = 0.5;    ///< of the rim against jumps
+constexpr int NormalRings = 4;       ///< that the normals are averaged over
+constexpr double LeastTurn = 0.15;   ///< cosine of axis and radius with the rim's normal
 constexpr int Smoothing = 3;         ///< rounds on the function that is cut
 constexpr double MostTilt = 0.7;     ///< cosine between mouth and rim plane at least
 constexpr double Snap = 0.2;         ///< of an edge
@@ -116,13 +118,56 @@ struct Candidate
 
 using Candidates = std::array<std::vector<Candidate>, Bins>;
 
-/// The outermost points of each direction, `lean` weighing radius against height.
-Candidates rimCandidates(const TriangleMesh& mesh, const Frame& frame, double radius, double lean)
+/// Outward vertex normals, averaged over some rings of neighbors; the surface may be turned inside
+/// out, as isosurfaces of a distance that is negative inside are.
+std::vector<Vec3> wideNormals(const TriangleMesh& mesh)
+{
+  std::vector<Vec3> normal(mesh.Points.size(), Vec3::Zero());
+  for (int round = 0; round <= NormalRings; ++round)
+  {
+    std::vector<Vec3> next(mesh.Points.size(), Vec3::Zero());
+    for (const auto& t : mesh.Triangles)
+    {
+      const Vec3 n =
+        round == 0
+          ? Vec3(
+              (mesh.Points[t[1]] - mesh.Points[t[0]]).cross(mesh.Points[t[2]] - mesh.Points[t[0]]))
+          : Vec3(normal[t[0]] + normal[t[1]] + normal[t[2]]);
+      for (const Index v : t)
+      {
+        next[v] += n;
+      }
+    }
+    for (Vec3& n : next)
+    {
+      n = n.norm() > 0.0 ? Vec3(n.normalized()) : n;
+    }
+    normal = std::move(next);
+  }
+  double volume = 0.0;
+  for (const auto& t : mesh.Triangles)
+  {
+    const Vec3& origin = mesh.Points.front();
+    const Vec3 a = mesh.Points[t[0]] - origin;
+    volume += a.dot((mesh.Points[t[1]] - origin).cross(mesh.Points[t[2]] - origin));
+  }
+  for (Vec3& n : normal)
+  {
+    n = volume < 0.0 ? Vec3(-n) : n;
+  }
+  return normal;
+}
+
+/// The outermost points of each direction where the surface turns from end to wall, `lean` weighing
+/// radius against height.
+Candidates rimCandidates(const TriangleMesh& mesh, const std::vector<Vec3>& normals,
+  const Frame& frame, double radius, double lean)
 {
   Candidates candidates;
   const double reach = std::hypot(WindowHeight, WindowRadius) * radius;
-  for (const Vec3& p : mesh.Points)
+  for (std::size_t i = 0; i < mesh.Points.size(); ++i)
   {
+    const Vec3& p = mesh.Points[i];
     if ((p - frame.Center).squaredNorm() > reach * reach)
     {
       continue;
@@ -131,7 +176,12 @@ Candidates rimCandidates(const TriangleMesh& mesh, const Frame& frame, double ra
     const double r = frame.radius(p);
     if (std::abs(h) <= WindowHeight * radius && r <= WindowRadius * radius)
     {
-      const int b = std::min(static_cast<int>(frame.bin(p)), Bins - 1);
+      const double bin = frame.bin(p);
+      if (normals[i].dot(frame.Axis) < LeastTurn || normals[i].dot(frame.radial(bin)) < LeastTurn)
+      {
+        continue; // wall that flares, or the face's inner border
+      }
+      const int b = std::min(static_cast<int>(bin), Bins - 1);
       candidates[b].push_back({r, h, -(lean * r + h)});
     }
   }
@@ -158,10 +208,10 @@ Candidates rimCandidates(const TriangleMesh& mesh, const Frame& frame, double ra
 
 /// The closed sequence of candidates with the least losses and jumps: dynamic programming, twice
 /// around, of which the middle turn is taken.
-std::optional<Rim> searchRim(
-  const TriangleMesh& mesh, const Frame& frame, double radius, double lean)
+std::optional<Rim> searchRim(const TriangleMesh& mesh, const std::vector<Vec3>& normals,
+  const Frame& frame, double radius, double lean)
 {
-  Candidates candidates = rimCandidates(mesh, frame, radius, lean);
+  Candidates candidates = rimCandidates(mesh, normals, frame, radius, lean);
   int missing = 0;
   for (int i = 0; i < 2 * Bins; ++i)
   {
@@ -172,7 +222,7 @@ std::optional<Rim> searchRim(
       list = ring(candidates, i - 1);
     }
   }
-  if (missing > Bins / 8 || candidates[0].empty())
+  if (missing > Bins / 3 || candidates[0].empty())
   {
     return std::nullopt;
   }
@@ -406,10 +456,11 @@ std::string cutEnd(FiberEnds& ends, const EndMouth& mouth, double lean)
     return "its radius or direction is not valid";
   }
   Frame frame(mouth.Center, mouth.Direction);
+  const auto normals = wideNormals(ends.Surface);
   std::optional<Rim> rim;
   for (int round = 0; round < 4; ++round)
   {
-    rim = searchRim(ends.Surface, frame, mouth.Radius, lean);
+    rim = searchRim(ends.Surface, normals, frame, mouth.Radius, lean);
     if (!rim)
     {
       return "the surface does not go round it";
@@ -464,8 +515,8 @@ Result<FiberEnds> findFiberEnds(
     {
       return Status::cancelled();
     }
-    std::string why = cutEnd(ends, mouths[m], 1.0);
-    for (const double lean : {1.3, 0.75})
+    std::string why = cutEnd(ends, mouths[m], 1.15);
+    for (const double lean : {1.5, 0.8})
     {
       why = why.empty() ? why : cutEnd(ends, mouths[m], lean);
     }

@@ -1,0 +1,177 @@
+#include "Mesh/FiberEnds.h"
+#include "Mesh/RegionCut.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace bsr;
+
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+
+/// The closed surface of a tube along x from -30 to 30: outer radius 12, at both ends a ring-shaped
+/// face and a cap that dips inwards by `dip` from radius 8 on. The ends are slanted by `slant`
+/// along y.
+TriangleMesh capsule(double dip, double slant = 0.0)
+{
+  std::vector<std::pair<double, double>> profile; // (x, radius)
+  for (int end = 0; end < 2; ++end)
+  {
+    const double s = end == 0 ? -1.0 : 1.0;
+    std::vector<std::pair<double, double>> half;
+    for (double r = 0.5; r < 8.0; r += 1.0)
+    {
+      half.emplace_back(s * (30.0 - dip * (1.0 - r * r / 64.0)), r);
+    }
+    for (double r = 8.0; r < 12.0; r += 1.0)
+    {
+      half.emplace_back(s * 30.0, r);
+    }
+    for (double x = 30.0; x > 0.5; x -= 1.0)
+    {
+      half.emplace_back(s * x, 12.0);
+    }
+    if (end == 1)
+    {
+      std::reverse(half.begin(), half.end());
+    }
+    profile.insert(profile.end(), half.begin(), half.end());
+  }
+  constexpr int around = 60;
+  TriangleMesh mesh;
+  mesh.Points.emplace_back(-30.0 + dip, 0.0, 0.0);
+  for (const auto& p : profile)
+  {
+    for (int j = 0; j < around; ++j)
+    {
+      const double a = 2.0 * Pi * j / around;
+      const double y = p.second * std::cos(a);
+      mesh.Points.emplace_back(p.first + slant * y * p.first / 30.0, y, p.second * std::sin(a));
+    }
+  }
+  const auto last = static_cast<Index>(mesh.Points.size());
+  mesh.Points.emplace_back(30.0 - dip, 0.0, 0.0);
+  const auto id = [](std::size_t i, int j)
+  { return static_cast<Index>(1 + i * around + static_cast<std::size_t>(j % around)); };
+  for (int j = 0; j < around; ++j)
+  {
+    mesh.Triangles.push_back({0, id(0, j + 1), id(0, j)});
+    mesh.Triangles.push_back({last, id(profile.size() - 1, j), id(profile.size() - 1, j + 1)});
+    for (std::size_t i = 0; i + 1 < profile.size(); ++i)
+    {
+      mesh.Triangles.push_back({id(i, j), id(i, j + 1), id(i + 1, j)});
+      mesh.Triangles.push_back({id(i, j + 1), id(i + 1, j + 1), id(i + 1, j)});
+    }
+  }
+  return mesh;
+}
+
+std::vector<EndMouth> bothMouths()
+{
+  return {{{-27.0, 0.5, 0.0}, {-1.0, 0.1, 0.0}, 7.5}, {{27.0, 0.0, 0.5}, {1.0, 0.0, 0.1}, 7.5}};
+}
+} // namespace
+
+TEST(FiberEnds, CutsBothEndsAlongTheOuterRim)
+{
+  for (const double slant : {0.0, 0.3})
+  {
+    Monitor monitor;
+    const TriangleMesh mesh = capsule(4.0, slant);
+    const auto ends = findFiberEnds(mesh, bothMouths(), monitor);
+    ASSERT_TRUE(ends);
+    EXPECT_EQ(ends->Note, "");
+    ASSERT_EQ(ends->Rims.size(), 2u);
+    for (Index k = 1; k <= 2; ++k)
+    {
+      EXPECT_EQ(regionEuler(ends->Surface, k), 1);
+      EXPECT_EQ(regionLoops(ends->Surface, k).size(), 1u);
+      double sum = 0.0;
+      for (const Index v : ends->Rims[k - 1])
+      {
+        const Vec3& p = ends->Surface.Points[v];
+        const double off =
+          std::hypot(std::hypot(p.y(), p.z()) - 12.0, std::abs(p.x()) - (30.0 + slant * p.y()));
+        EXPECT_LT(off, 3.0);
+        sum += off * off;
+      }
+      EXPECT_LT(std::sqrt(sum / static_cast<double>(ends->Rims[k - 1].size())), 1.2);
+    }
+    EXPECT_EQ(regionEuler(ends->Surface, 0), 0); // the body is a tube
+  }
+}
+
+TEST(FiberEnds, WorksOnASurfaceTurnedInsideOut)
+{
+  TriangleMesh mesh = capsule(4.0);
+  for (auto& t : mesh.Triangles)
+  {
+    std::swap(t[1], t[2]);
+  }
+  Monitor monitor;
+  const auto ends = findFiberEnds(mesh, bothMouths(), monitor);
+  ASSERT_TRUE(ends);
+  EXPECT_EQ(ends->Rims.size(), 2u) << ends->Note;
+}
+
+TEST(FiberEnds, NoMouthNoEnd)
+{
+  Monitor monitor;
+  const auto ends = findFiberEnds(capsule(4.0), {}, monitor);
+  ASSERT_TRUE(ends);
+  EXPECT_TRUE(ends->Rims.empty());
+  EXPECT_EQ(ends->Surface.Triangles.size(), capsule(4.0).Triangles.size());
+}
+
+TEST(FiberEnds, LeavesOutWhatIsNotThereAndSaysSo)
+{
+  Monitor monitor;
+  const auto ends = findFiberEnds(capsule(4.0),
+    {{{200.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 8.0}, {{0, 0, 0}, {0, 0, 0}, 8.0}}, monitor);
+  ASSERT_TRUE(ends);
+  EXPECT_TRUE(ends->Rims.empty());
+  EXPECT_NE(ends->Note.find("Mouth 1"), std::string::npos);
+  EXPECT_NE(ends->Note.find("Mouth 2"), std::string::npos);
+}
+
+TEST(FiberEnds, TheSameMouthTwiceIsOneEnd)
+{
+  Monitor monitor;
+  auto mouths = bothMouths();
+  mouths[1] = mouths[0];
+  const auto ends = findFiberEnds(capsule(4.0), mouths, monitor);
+  ASSERT_TRUE(ends);
+  EXPECT_EQ(ends->Rims.size(), 1u);
+}
+
+TEST(FiberEnds, RefusesAnEmptySurface)
+{
+  Monitor monitor;
+  EXPECT_FALSE(findFiberEnds({}, bothMouths(), monitor));
+}
+
+TEST(RegionCut, SplitsAlongALevelAndKeepsTheTopology)
+{
+  TriangleMesh mesh = capsule(0.0);
+  mesh.Region.assign(mesh.Triangles.size(), 0);
+  std::vector<double> value;
+  for (const Vec3& p : mesh.Points)
+  {
+    value.push_back(p.x() - 0.37 * p.y() - 3.21);
+  }
+  cutAtZero(mesh, value, 0.2);
+  for (std::size_t t = 0; t < mesh.Triangles.size(); ++t)
+  {
+    const auto& c = mesh.Triangles[t];
+    const double lo = std::min({value[c[0]], value[c[1]], value[c[2]]});
+    const double hi = std::max({value[c[0]], value[c[1]], value[c[2]]});
+    EXPECT_FALSE(lo < 0.0 && hi > 0.0);
+    mesh.Region[t] = hi > 0.0 ? 1 : 0;
+  }
+  EXPECT_EQ(regionLoops(mesh, 1).size(), 1u);
+  EXPECT_EQ(regionEuler(mesh, 1), 1);
+  EXPECT_EQ(regionEuler(mesh, 0), 1);
+}
