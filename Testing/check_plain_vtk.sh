@@ -19,6 +19,8 @@ if ! compgen -G "$work/prefix/usr/lib/*/cmake/vtk-*" >/dev/null; then
   done
 fi
 vtk_dir="$(compgen -G "$work/prefix/usr/lib/*/cmake/vtk-*" | head -n 1)"
+# VTK's libraries look for each other in the system's folders only.
+export LD_LIBRARY_PATH="$(dirname "$(dirname "$vtk_dir")")${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
 
 cmake -S "$source_dir" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DBSR_BUILD_PLUGIN=OFF -DBSR_WRAP_PYTHON=OFF "-DVTK_DIR=$vtk_dir"

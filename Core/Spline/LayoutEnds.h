@@ -16,9 +16,10 @@ struct CutLayout
 };
 
 /**
- * Removes the caps of open ends: of each region > 0 its largest connected group of quads, where that
- * leaves a sound open surface: the group a disc, borders simple loops, no other component or
- * vertex torn. Groups that fail are kept, and the message says so. An empty list: nothing to remove.
+ * Removes the caps of open ends: of each region > 0 its largest connected group of quads, where
+ * that leaves a sound open surface: the group a disc, borders simple loops, no other component or
+ * vertex torn. Groups that fail are kept, and the message says so. An empty list: nothing to
+ * remove.
  */
 CutLayout cutEnds(const QuadMesh& quads, const std::vector<Index>& region);
 
