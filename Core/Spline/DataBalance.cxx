@@ -121,7 +121,7 @@ Result<std::vector<BalanceScore>> scanDataWeight(const PatchNet& net, FitSolver&
     return surface.status();
   }
   const double correlation = neighborCorrelation(net, *surface, points);
-  const double limit = scores[least].Error * (1.0 + 0.35 * correlation);
+  const double limit = scores[least].Error * (1.0 + 0.5 * correlation);
   const auto chosen = std::find_if(
     scores.begin(), scores.end(), [limit](const BalanceScore& s) { return s.Error <= limit; });
   best = chosen->DataWeight;

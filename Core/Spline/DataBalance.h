@@ -17,7 +17,7 @@ struct BalanceScore
  * the roughness of CT surfaces is correlated over several voxels: single left-out points would be
  * predicted by neighbors with the same error, and the noise be followed.
  * What is correlated over more than a region still looks like shape; so where the residuals of
- * neighbors are correlated, the smoothest K is taken whose error is up to a third above the least.
+ * neighbors are correlated, the smoothest K is taken whose error is up to a half above the least.
  * Returns the scores, increasing in K; `best` is set to the K chosen.
  */
 Result<std::vector<BalanceScore>> scanDataWeight(const PatchNet& net, FitSolver& solver,

@@ -5,6 +5,7 @@
 #include "Spline/ModelBuilder.h"
 #include "Spline/PointSelection.h"
 #include "Spline/VertexSpace.h"
+#include "Spline/WallThickness.h"
 
 #include <cmath>
 
@@ -224,6 +225,15 @@ private:
     this->Out.Rms = count > 0 ? std::sqrt(squares / count) : 0.0;
     this->Out.Model =
       buildModel(complex, net, shells[0].Net, shells.size() > 1 ? &shells[1].Net : nullptr);
+    if (shells.size() > 1)
+    {
+      this->Out.MinimumWall = minimumWall(net, shells[0].Net, shells[1].Net);
+      if (this->Out.MinimumWall < 0.0)
+      {
+        this->say("The shells cross: the inner one lies outside the outer one by up to " +
+                  std::to_string(-this->Out.MinimumWall) + "; use more fairing or more quads.");
+      }
+    }
     PatchReport wall;
     wall.Side = Shell::Wall;
     this->Out.Patches.resize(this->Out.Model.Patches.size(), wall);

@@ -76,7 +76,7 @@ struct G1FitResult
   int FoldedPatches = 0;
   int OpenEndCount = 0;
   std::int64_t Unknowns = 0; ///< of one shell's system
-  double MinimumWall = 0.0;  ///< smallest distance between the shells, world units; 0 without inner
+  double MinimumWall = 0.0;  ///< between the shells, negative where they cross; 0 without inner
   std::string Message;       ///< what the user should know, e.g. that there is no inner shell
 };
 
