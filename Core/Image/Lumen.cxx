@@ -20,6 +20,7 @@ constexpr std::uint8_t DeepOpen = 31;  ///< 0.12
 constexpr std::uint8_t GrowOpen = 127; ///< 0.5
 constexpr std::uint8_t GrowRing = 25;  ///< 0.1
 constexpr double SmallestLumen = 3.5;  ///< voxels
+constexpr double RidgeShare = 0.4;     ///< of the widest: lower ridges are the wall's roughness
 constexpr double SmallestMouth = 0.6;  ///< of the lumen's radius
 constexpr double MouthDepth = 10.0;    ///< voxels
 
@@ -89,8 +90,8 @@ Result<double> keepWideComponents(
   return static_cast<double>(widest);
 }
 
-/// Median distance to the object over the ridge of the distance within a mask.
-double medianRidge(const Mask& mask, const Volume<float>& distance)
+/// Median distance to the object over the ridge of the distance within a mask, where above `least`.
+double medianRidge(const Mask& mask, const Volume<float>& distance, double least)
 {
   const auto m = mask.view();
   const auto d = distance.view();
@@ -103,7 +104,7 @@ double medianRidge(const Mask& mask, const Volume<float>& distance)
       for (std::int64_t i = 1; i + 1 < n[0]; ++i)
       {
         const float here = d(i, j, k);
-        if (!m(i, j, k) || here <= 3.0f)
+        if (!m(i, j, k) || here <= least)
         {
           continue;
         }
@@ -350,7 +351,7 @@ Result<LumenResult> findLumen(
   {
     return widest.status();
   }
-  result.LumenRadius = medianRidge(lumen, *distance);
+  result.LumenRadius = medianRidge(lumen, *distance, std::max(3.0, RidgeShare * *widest));
   result.Found = *widest >= SmallestLumen && result.LumenRadius > 0.0;
   result.PoreRadius =
     options.PoreRadius > 0.0 ? options.PoreRadius : std::max(small, 0.45 * result.LumenRadius);
