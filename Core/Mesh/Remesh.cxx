@@ -49,6 +49,7 @@ public:
       {
         break;
       }
+      this->flipToRegular(); // fans of needles would grow vertices of ever more edges
     }
   }
 
