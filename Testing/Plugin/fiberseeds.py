@@ -8,7 +8,8 @@ def check_model(data, open_ends, what):
     n = judge(data)
     print(what, n)
     check_equal(n["symmetric"], True, what + ": neighbors symmetric")
-    check_equal(n["gap"], 0.0, what + ": gap")
+    # The control points are the same bits; what is left is the rounding of sums taken in another order.
+    check_between(n["gap"], 0.0, 1e-10, what + ": gap")
     check_equal(n["identical"], 1.0, what + ": share of bit-identical sides")
     check_between(n["jump"], 0.0, 0.01, what + ": normal jump in degrees")
     check_equal(n["folded"], 0, what + ": folded patches")
