@@ -101,6 +101,10 @@ int vtkClosing::RequestData(
   output->Initialize();
   int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
   vtkDataArray* chosen = this->GetInputArrayToProcess(0, inputs, association);
+  if (!chosen && bsr::namesNoArray(this->GetInputArrayInformation(0)))
+  {
+    chosen = input->GetPointData()->GetScalars();
+  }
   const auto values = bsr::imageScalars(input, chosen, association);
   if (!values)
   {

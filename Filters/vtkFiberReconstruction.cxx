@@ -1,5 +1,6 @@
 #include "vtkFiberReconstruction.h"
 
+#include "Adapters/BSRImageAdapter.h"
 #include "vtkBSplineG1Fit.h"
 #include "vtkClosing.h"
 #include "vtkEDTClassify.h"
@@ -203,6 +204,11 @@ int vtkFiberReconstruction::RequestData(
 {
   vtkNew<vtkImageData> image;
   image->ShallowCopy(vtkImageData::GetData(inputs[0]));
+  if (bsr::namesNoArray(this->GetInputArrayInformation(0)))
+  {
+    this->SetInputArrayToProcess(
+      0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+  }
   vtkInformation* array = this->GetInputArrayInformation(0);
   StageRunner stages(this, 100.0);
   const auto fail = [&]()

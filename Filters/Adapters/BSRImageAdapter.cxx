@@ -2,10 +2,17 @@
 
 #include <vtkCellData.h>
 #include <vtkDataObject.h>
+#include <vtkInformation.h>
 #include <vtkPointData.h>
 
 namespace bsr
 {
+bool namesNoArray(vtkInformation* array)
+{
+  const char* name = array->Get(vtkDataObject::FIELD_NAME());
+  return name && !*name;
+}
+
 Result<vtkDataArray*> imageScalars(vtkImageData* image, vtkDataArray* chosen, int association)
 {
   if (!image || image->GetNumberOfPoints() == 0)

@@ -11,12 +11,18 @@
 
 #include <string>
 
+class vtkInformation;
+
 namespace bsr
 {
 /// The point array of one component that a filter is to work on: `chosen` (what
 /// GetInputArrayToProcess gave, may be null). Cell arrays, missing arrays and several components
 /// are errors that name the cure.
 Result<vtkDataArray*> imageScalars(vtkImageData* image, vtkDataArray* chosen, int association);
+
+/// True if an algorithm's input array information names no array (as ParaView leaves it for a
+/// source that has not run yet): the active scalars are meant then.
+bool namesNoArray(vtkInformation* array);
 
 /// The voxels of an image as Core sees them; `values` is a point array of type T.
 template <class T>
