@@ -7,6 +7,7 @@
 #include "Spline/VertexSpace.h"
 #include "Spline/WallThickness.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace bsr
@@ -246,11 +247,45 @@ private:
   CutLayout Cut;
   G1FitResult Out;
 };
+
+/// Volume enclosed by the layout, negative if its quads are oriented inward.
+double enclosedVolume(const QuadMesh& quads)
+{
+  double volume = 0.0;
+  const Vec3 origin = quads.Points.empty() ? Vec3::Zero() : quads.Points.front();
+  for (const auto& q : quads.Quads)
+  {
+    const Vec3 a = quads.Points[q[0]] - origin;
+    const Vec3 c = quads.Points[q[2]] - origin;
+    volume += a.dot((quads.Points[q[1]] - origin).cross(c)) / 6.0;
+    volume += a.dot(c.cross(quads.Points[q[3]] - origin)) / 6.0;
+  }
+  return volume;
+}
 } // namespace
 
 Result<G1FitResult> fitG1(const PartitionedPoints& points, const QuadMesh& quads,
   const G1FitOptions& options, Monitor& monitor)
 {
-  return Fitter(points, quads, options, monitor).run();
+  const auto last = static_cast<Index>(quads.Points.size());
+  const bool inRange = std::all_of(quads.Quads.begin(), quads.Quads.end(),
+    [last](const auto& q)
+    { return std::all_of(q.begin(), q.end(), [last](Index i) { return i >= 0 && i < last; }); });
+  if (!inRange || enclosedVolume(quads) >= 0.0)
+  {
+    return Fitter(points, quads, options, monitor).run();
+  }
+  // Isosurfaces may be oriented inward: turn the quads over, u and v change places.
+  QuadMesh outward = quads;
+  for (auto& q : outward.Quads)
+  {
+    std::swap(q[1], q[3]);
+  }
+  PartitionedPoints turned = points;
+  for (Vec2& uv : turned.UV)
+  {
+    std::swap(uv[0], uv[1]);
+  }
+  return Fitter(turned, outward, options, monitor).run();
 }
 } // namespace bsr

@@ -20,7 +20,7 @@ enum class Continuity
 
 enum class OpenEnds
 {
-  Automatic, ///< quads with EndRegion > 0 are removed, else caps that no point covers
+  Automatic, ///< quads with EndRegion > 0 are removed
   KeepClosed
 };
 

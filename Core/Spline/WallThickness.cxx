@@ -51,7 +51,10 @@ double minimumWall(const PatchNet& net, const NetPoints& outer, const NetPoints&
       {
         const auto [nearest, distance2] = tree.nearest(inside[i].Point);
         const PatchPoint& o = outside[nearest];
-        const bool crossed = (o.Point - inside[i].Point).dot(o.normal()) < 0.0;
+        const Vec3 across = o.Point - inside[i].Point;
+        // Beyond an open rim the nearest sample lies aside, not above: that is no crossing.
+        const double height = across.dot(o.normal());
+        const bool crossed = height < -0.7 * std::sqrt(distance2) * o.normal().norm();
         least = std::min(least, crossed ? -std::sqrt(distance2) : std::sqrt(distance2));
       }
       return least;

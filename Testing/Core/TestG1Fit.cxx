@@ -302,6 +302,24 @@ TEST(G1Fit, HollowTubeWithOpenEnds)
   EXPECT_EQ(fitted(p, m, closed).OpenEndCount, 0);
 }
 
+TEST(G1Fit, InwardLayoutsAreTurned)
+{
+  QuadMesh m = meshes::sphere(1);
+  for (auto& q : m.Quads)
+  {
+    std::swap(q[1], q[3]);
+  }
+  G1FitOptions o;
+  o.DataWeight = 1e4;
+  const G1FitResult r = fitted(sample(m, 8, toSphere), m, o);
+  for (const SplinePatch& p : r.Model.Patches)
+  {
+    const SurfacePoint s = evaluatePatch(r.Model, p, 0.5, 0.5);
+    EXPECT_GT(s.normal().dot(s.Point), 0.0);
+  }
+  EXPECT_LE(deviation(r.Model, toSphere, Shell::Outer).first, 1e-3);
+}
+
 TEST(G1Fit, EmptyPatchesAreCarriedAndDoNotFold)
 {
   const QuadMesh m = meshes::sphere(2);
