@@ -1,6 +1,6 @@
 """From a CT volume of a hollow fiber to a B-spline solid in a STEP file.
 
-    pvpython Examples/fiber.py [VOLUME [ISO]] [--output out] [--quads 400] [--plugin FILE]
+    pvpython Examples/fiber.py [VOLUME [ISO]] [--output out] [--quads 300] [--plugin FILE]
 
 VOLUME is any image that ParaView reads (.vti, .mhd, .nrrd, .tif ...); without it a digital fiber is made.
 ISO is the gray value of the surface; without it the histogram decides. Writes model.vtp, model.step, report.csv
@@ -28,7 +28,7 @@ def arguments():
     p.add_argument("volume", nargs="?")
     p.add_argument("iso", nargs="?", type=float)
     p.add_argument("--output", default="out", help="folder for the results")
-    p.add_argument("--quads", type=int, default=400, help="number of quads of the layout")
+    p.add_argument("--quads", type=int, default=300, help="number of quads of the layout")
     p.add_argument("--plugin", default=BUILT_PLUGIN, help="BSplineReconstruction.so, if ParaView does not load it by itself")
     return p.parse_args()
 

@@ -82,7 +82,7 @@ public:
   ///@}
 
   ///@{
-  /// Number of quads of the closed layout, so about the number of patches a shell. Default 400.
+  /// Number of quads of the closed layout, so about the number of patches a shell. Default 300.
   vtkSetMacro(NumberOfQuads, int);
   vtkGetMacro(NumberOfQuads, int);
   ///@}
@@ -132,7 +132,7 @@ protected:
   bool AutoIsoValue = true;
   double Radius = 16.0;
   bool AutoRadius = true;
-  int NumberOfQuads = 400;
+  int NumberOfQuads = 300;
   int Sides = BOTH;
   int OpenEnds = 0;
   int Continuity = 0;

@@ -18,14 +18,14 @@ vtkStandardNewMacro(vtkPartitionToQuads);
 
 namespace
 {
-/// The direction that a point's quad must face: its normal, turned over on the inner wall.
-bsr::Result<std::vector<bsr::Vec3>> facingFrom(vtkPointSet* input)
+/// The direction that a point's quad must face: its normal, turned over on the inner wall. None
+/// without normals.
+std::vector<bsr::Vec3> facingFrom(vtkPointSet* input)
 {
   vtkDataArray* normals = input->GetPointData()->GetNormals();
   if (!normals)
   {
-    return bsr::Status::invalidInput("MatchNormals is on, but the input has no point normals; "
-                                     "compute them or turn it off.");
+    return {};
   }
   vtkDataArray* side = input->GetPointData()->GetArray("Side");
   std::vector<bsr::Vec3> facing(static_cast<std::size_t>(normals->GetNumberOfTuples()));
@@ -88,12 +88,7 @@ bsr::Result<bsr::Partition> partition(
   bsr::PartitionOptions options;
   if (matchNormals)
   {
-    auto facing = facingFrom(input);
-    if (!facing)
-    {
-      return facing.status();
-    }
-    options.Facing = std::move(*facing);
+    options.Facing = facingFrom(input);
   }
   return bsr::partitionToQuads(*points, *quads, options, monitor);
 }

@@ -22,7 +22,7 @@
  * The result is the same for any number of threads, bit for bit.
  *
  * @warning The nearest quad of a point on the inner wall of a thin or collapsed tube may lie on the
- * far side of the lumen. Where the input has normals, MatchNormals forbids that.
+ * far side of the lumen. Where the input has normals, as isosurfaces do, MatchNormals forbids that.
  *
  * @sa vtkQuadRemesh, vtkBSplineG1Fit
  */
@@ -52,10 +52,11 @@ public:
 
   ///@{
   /**
-   * Off by default. If on, a point with a normal (active point normals) is given only quads that
+   * On by default. A point with a normal (active point normals) is given only quads that
    * face the way it does: less than 90 degrees between the normals. Points whose array `Side` is 1
    * (inner wall, see vtkEDTClassify) are given quads that face the opposite way, since the layout's
-   * normals point out of the closed object. A point that no quad suits takes the nearest one.
+   * normals point out of the closed object. A point that no quad suits, or an input without
+   * normals, takes the nearest one. If off, always the nearest.
    */
   vtkSetMacro(MatchNormals, bool);
   vtkGetMacro(MatchNormals, bool);
@@ -70,7 +71,7 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   int Method = NEAREST_QUAD;
-  bool MatchNormals = false;
+  bool MatchNormals = true;
 
 private:
   vtkPartitionToQuads(const vtkPartitionToQuads&) = delete;
