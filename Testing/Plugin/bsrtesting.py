@@ -58,11 +58,7 @@ def fetch(proxy, port=0):
 
 def array(data, name, association="point"):
     """A point, cell or field array as numpy array; fails, listing what is there, if it is missing."""
-    attributes = {
-        "point": data.GetPointData,
-        "cell": data.GetCellData,
-        "field": data.GetFieldData,
-    }[association]()
+    attributes = getattr(data, "Get%sData" % association.capitalize())()
     a = attributes.GetArray(name)
     there = [attributes.GetArrayName(i) for i in range(attributes.GetNumberOfArrays())]
     assert a is not None, "no %s array %s; there are %s" % (association, name, there)

@@ -47,7 +47,7 @@ def the_same_on_one_thread(expected):
         out.write("from bsrtesting import *\n"
                   "f = FiberReconstruction(Input=FiberPhantom(Seed=2), NumberOfQuads=%d)\n"
                   "SaveData(%r, proxy=OutputPort(f, 0))\n" % (QUADS, path))
-    subprocess.run(["taskset", "-c", "0", sys.executable, script], check=True)
+    subprocess.run(["taskset", "-c", "0", "pvpython", script], check=True)
     again = OpenDataFile(path)
     check(bits(fetch(again)) == expected, "one thread gives the same bits")
 
