@@ -24,6 +24,17 @@ constexpr double RidgeShare = 0.4;     ///< of the widest: lower ridges are the 
 constexpr double SmallestMouth = 0.6;  ///< of the lumen's radius
 constexpr double MouthDepth = 10.0;    ///< voxels
 
+/// For short steps between those with progress: passes on the wish to cancel only.
+class CancelOnly : public Monitor
+{
+public:
+  explicit CancelOnly(Monitor& parent) : Parent(parent) {}
+  bool cancelled() override { return this->Parent.cancelled(); }
+
+private:
+  Monitor& Parent;
+};
+
 template <class Predicate>
 Mask maskWhere(const Mask& like, const Predicate& predicate)
 {
@@ -341,8 +352,7 @@ Result<LumenResult> findLumen(
   {
     return seen.status();
   }
-  Monitor quiet;
-  SubMonitor growing(quiet, 0.0, 1.0);
+  CancelOnly growing(monitor);
   LumenResult result;
   Mask lumen =
     maskWhere(near, [&](std::int64_t i) { return asked.Data[i] && seen->Open.Data[i] < CoreOpen; });

@@ -15,6 +15,8 @@ constexpr int Planes = 64;
 constexpr double GoldenAngle = 2.399963229728653;
 /// Directions belong to a plane when their sine with it is below this.
 constexpr double PlaneSine = 0.25;
+/// Steps of a stored free distance to a voxel.
+constexpr int FreeUnit = 4;
 
 Double3 spiral(double z, int k)
 {
@@ -42,8 +44,28 @@ int count(std::uint64_t bits)
 class RayCaster
 {
 public:
-  explicit RayCaster(const Volume<float>& distance) : Distance(distance.view())
+  explicit RayCaster(const Volume<float>& distance)
+      : Distance(distance.view()), Free(distance.Extent, distance.Spacing)
   {
+    parallelFor(0, distance.Extent.volume(), 65536,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        for (std::int64_t i = begin; i < end; ++i)
+        {
+          this->Free.Data[i] =
+            static_cast<std::uint8_t>(std::min(distance.Data[i] * FreeUnit, 255.0f));
+        }
+      });
+    for (int d = 0; d < 256; ++d)
+    {
+      this->Advance[d] = std::max(0.6f, static_cast<float>(d) / FreeUnit - 0.7f);
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      this->Size[a] = static_cast<float>(distance.Extent.Size[a]);
+    }
+    this->StrideY = distance.Extent.Size[0];
+    this->StrideZ = distance.Extent.Size[0] * distance.Extent.Size[1];
     const auto directions = rayDirections();
     const double unit = voxelLength(distance.Spacing);
     for (int k = 0; k < Rays; ++k)
@@ -94,33 +116,36 @@ public:
 private:
   bool escapes(const Int3& from, const std::array<float, 3>& step, float t) const
   {
-    const Int3& n = this->Distance.Dims;
+    const float x0 = static_cast<float>(from[0]) + 0.5f;
+    const float y0 = static_cast<float>(from[1]) + 0.5f;
+    const float z0 = static_cast<float>(from[2]) + 0.5f;
     for (;;)
     {
-      Int3 at;
-      for (int a = 0; a < 3; ++a)
+      const float x = x0 + t * step[0];
+      const float y = y0 + t * step[1];
+      const float z = z0 + t * step[2];
+      if (!(x >= 0.0f && y >= 0.0f && z >= 0.0f && x < this->Size[0] && y < this->Size[1] &&
+            z < this->Size[2]))
       {
-        const float x = static_cast<float>(from[a]) + t * step[a] + 0.5f;
-        if (x < 0.0f)
-        {
-          return true;
-        }
-        at[a] = static_cast<std::int64_t>(x);
-        if (at[a] >= n[a])
-        {
-          return true;
-        }
+        return true;
       }
-      const float d = this->Distance(at[0], at[1], at[2]);
-      if (d < 0.5f)
+      const std::uint8_t d =
+        this->Free.Data[static_cast<int>(x) + this->StrideY * static_cast<int>(y) +
+                        this->StrideZ * static_cast<int>(z)];
+      if (d < FreeUnit / 2)
       {
         return false;
       }
-      t += std::max(0.6f, d - 0.7f);
+      t += this->Advance[d];
     }
   }
 
   ImageView<const float> Distance;
+  Volume<std::uint8_t> Free; ///< Distance in quarters of a voxel, rounded down: fits the cache
+  std::array<float, 256> Advance{};
+  std::array<float, 3> Size{};
+  std::int64_t StrideY = 0;
+  std::int64_t StrideZ = 0;
   std::array<std::array<float, 3>, Rays> Steps{};
   std::array<std::uint64_t, Planes> Masks{};
   std::array<int, Planes> Sizes{};

@@ -19,6 +19,8 @@ constexpr double WindowHeight = 1.0; ///< of the mouth's radius, up and down the
 constexpr double WindowRadius = 2.6; ///< of the mouth's radius
 constexpr double MostLoss = 0.4;     ///< of the mouth's radius: how far within the outermost
 constexpr double Stiffness = 0.5;    ///< of the rim against jumps
+constexpr double FreeDetour = 0.1;   ///< of the mouth's radius: from a smooth end
+constexpr double DetourCost = 3.0;   ///< of what is farther, against distance outwards
 constexpr int NormalRings = 4;       ///< that the normals are averaged over
 constexpr double LeastTurn = 0.15;   ///< cosine of axis and radius with the rim's normal
 constexpr int Smoothing = 3;         ///< rounds on the function that is cut
@@ -158,10 +160,48 @@ std::vector<Vec3> wideNormals(const TriangleMesh& mesh)
   return normal;
 }
 
+/// Height of the rim as a smooth function of the direction, robust against detours.
+struct SmoothHeight
+{
+  static constexpr int Terms = 5; ///< a plane and an oval
+  using Coefficients = Eigen::Matrix<double, Terms, 1>;
+  Coefficients Weights = Coefficients::Zero();
+
+  static Coefficients terms(double bin)
+  {
+    const double a = bin / Bins * 2.0 * Pi;
+    Coefficients t;
+    t << 1.0, std::cos(a), std::sin(a), std::cos(2.0 * a), std::sin(2.0 * a);
+    return t;
+  }
+  double at(double bin) const { return this->Weights.dot(terms(bin)); }
+
+  /// The least sum of absolute deviations, by least squares with weights.
+  static SmoothHeight through(const Rim& rim, double radius)
+  {
+    SmoothHeight f;
+    for (int round = 0; round < 12; ++round)
+    {
+      Eigen::Matrix<double, Terms, Terms> normal = Eigen::Matrix<double, Terms, Terms>::Zero();
+      Coefficients right = Coefficients::Zero();
+      for (int i = 0; i < Bins; ++i)
+      {
+        const Coefficients t = terms(i + 0.5);
+        const double deviation = round == 0 ? 0.0 : std::abs(rim.Height[i] - f.at(i + 0.5));
+        const double weight = 1.0 / (0.02 * radius + deviation);
+        normal += weight * t * t.transpose();
+        right += weight * rim.Height[i] * t;
+      }
+      f.Weights = normal.ldlt().solve(right);
+    }
+    return f;
+  }
+};
+
 /// The outermost points of each direction where the surface turns from end to wall, `lean` weighing
-/// radius against height.
+/// radius against height; what is far from a `smooth` end, if known, counts as less far out.
 Candidates rimCandidates(const TriangleMesh& mesh, const std::vector<Vec3>& normals,
-  const Frame& frame, double radius, double lean)
+  const Frame& frame, double radius, double lean, const SmoothHeight* smooth)
 {
   Candidates candidates;
   const double reach = std::hypot(WindowHeight, WindowRadius) * radius;
@@ -182,7 +222,9 @@ Candidates rimCandidates(const TriangleMesh& mesh, const std::vector<Vec3>& norm
         continue; // wall that flares, or the face's inner border
       }
       const int b = std::min(static_cast<int>(bin), Bins - 1);
-      candidates[b].push_back({r, h, -(lean * r + h)});
+      const double detour =
+        smooth ? std::max(std::abs(h - smooth->at(bin)) - FreeDetour * radius, 0.0) : 0.0;
+      candidates[b].push_back({r, h, DetourCost * detour - (lean * r + h)});
     }
   }
   for (auto& list : candidates)
@@ -209,9 +251,9 @@ Candidates rimCandidates(const TriangleMesh& mesh, const std::vector<Vec3>& norm
 /// The closed sequence of candidates with the least losses and jumps: dynamic programming, twice
 /// around, of which the middle turn is taken.
 std::optional<Rim> searchRim(const TriangleMesh& mesh, const std::vector<Vec3>& normals,
-  const Frame& frame, double radius, double lean)
+  const Frame& frame, double radius, double lean, const SmoothHeight* smooth = nullptr)
 {
-  Candidates candidates = rimCandidates(mesh, normals, frame, radius, lean);
+  Candidates candidates = rimCandidates(mesh, normals, frame, radius, lean, smooth);
   int missing = 0;
   for (int i = 0; i < 2 * Bins; ++i)
   {
@@ -392,36 +434,24 @@ std::optional<std::vector<double>> endFunction(
   }
   smooth(value, neighbors);
   const Index seed = capVertex(mesh, frame, radius);
-  if (seed < 0 || value[seed] <= 0.0)
+  const auto lowest = std::min_element(value.begin(), value.end());
+  if (seed < 0 || *lowest >= 0.0)
   {
     return std::nullopt;
   }
-  const auto end = connected(neighbors, seed, [&](Index v) { return value[v] > 0.0; });
-  Index outside = -1;
-  double lowest = 0.0;
-  for (std::size_t i = 0; i < value.size(); ++i)
-  {
-    if (!end[i])
-    {
-      value[i] = -std::abs(value[i]);
-      if (value[i] < lowest)
-      {
-        lowest = value[i];
-        outside = static_cast<Index>(i);
-      }
-    }
-  }
-  if (outside < 0)
+  // The cap may lie so deep in the lumen that it is negative: what counts is that the ring of the
+  // end face, which is positive, parts it from the body.
+  const auto outside = static_cast<Index>(lowest - value.begin());
+  const auto below = connected(neighbors, outside, [&](Index v) { return value[v] < 0.0; });
+  if (below[seed])
   {
     return std::nullopt;
   }
-  const auto body = connected(neighbors, outside, [&](Index v) { return value[v] < 0.0; });
+  const auto end = connected(neighbors, seed, [&](Index v) { return !below[v]; });
+  const auto body = connected(neighbors, outside, [&](Index v) { return !end[v]; });
   for (std::size_t i = 0; i < value.size(); ++i)
   {
-    if (!end[i] && !body[i])
-    {
-      value[i] = 1e-3 * radius;
-    }
+    value[i] = body[i] ? -std::abs(value[i]) : std::abs(value[i]);
   }
   return value;
 }
@@ -474,6 +504,12 @@ std::string cutEnd(FiberEnds& ends, const EndMouth& mouth, double lean)
       }
       frame = plane;
     }
+  }
+  for (int round = 0; round < 2; ++round)
+  {
+    const SmoothHeight smooth = SmoothHeight::through(*rim, mouth.Radius);
+    const auto smoother = searchRim(ends.Surface, normals, frame, mouth.Radius, lean, &smooth);
+    rim = smoother ? smoother : rim;
   }
   auto value = endFunction(ends.Surface, frame, *rim, mouth.Radius);
   if (!value)

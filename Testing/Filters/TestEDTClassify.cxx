@@ -3,6 +3,7 @@
 #include "vtkClosing.h"
 #include "vtkEDTClassify.h"
 #include "vtkFiberEnds.h"
+#include "vtkFiberPhantom.h"
 
 #include <vtkCellData.h>
 #include <vtkFeatureEdges.h>
@@ -11,6 +12,7 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkSphereSource.h>
+#include <vtkStaticCellLocator.h>
 
 #include <algorithm>
 
@@ -190,4 +192,46 @@ TEST(FiberEndsFilter, NeedsTheClassifiedSurface)
   ErrorLog log(chain.Ends);
   chain.Ends->Update();
   EXPECT_TRUE(log.saidOnce("LumenMouths")) << log.text();
+}
+
+TEST(FiberEnds, RimsFollowTheTrueRims)
+{
+  vtkNew<vtkFiberPhantom> phantom;
+  phantom->SetSeed(14); // a deep cap at one end, a fibril behind the rim of the other
+  phantom->Update();
+  auto* image = vtkImageData::SafeDownCast(phantom->GetOutputDataObject(0));
+  auto* walls = vtkPolyData::SafeDownCast(phantom->GetOutputDataObject(1));
+  Chain chain(image);
+  const double iso = field(image, "IsoValue");
+  chain.Closing->SetIsoValue(iso);
+  chain.Closing->SetAutoRadius(true);
+  chain.Raw->SetValue(0, iso);
+  chain.Ends->Update();
+  ASSERT_EQ(field(chain.Ends->GetOutput(), "OpenEnds"), 2.0);
+  vtkNew<vtkStaticCellLocator> rims;
+  rims->SetDataSet(vtkPolyData::SafeDownCast(chain.Ends->GetOutputDataObject(1)));
+  rims->BuildLocator();
+  for (const double end : {1.0, 2.0})
+  {
+    double squares = 0.0;
+    double count = 0.0;
+    for (vtkIdType i = 0; i < walls->GetNumberOfPoints(); ++i)
+    {
+      if (walls->GetPointData()->GetArray("End")->GetComponent(i, 0) == end &&
+          walls->GetPointData()->GetArray("Side")->GetComponent(i, 0) == 0.0)
+      {
+        double closest[3];
+        vtkIdType cell = -1;
+        int sub = 0;
+        double square = 0.0;
+        rims->FindClosestPoint(walls->GetPoint(i), closest, cell, sub, square);
+        squares += square;
+        count += 1.0;
+      }
+    }
+    ASSERT_GT(count, 0.0);
+    EXPECT_LE(std::sqrt(squares / count), 1.5) << "voxels, end " << end;
+    RecordProperty(
+      "RimRMS" + std::to_string(static_cast<int>(end)), std::to_string(std::sqrt(squares / count)));
+  }
 }
