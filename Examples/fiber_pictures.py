@@ -36,7 +36,7 @@ def aim(view, bounds):
     view.CameraViewUp = [1.0 if i == up else 0.0 for i in range(3)]
     view.CameraParallelProjection = 1
     view.ResetCamera()
-    view.GetActiveCamera().Zoom(1.3)
+    view.GetActiveCamera().Zoom(1.55)
 
 
 def show(proxy, view, color=None, array=None, edges=False, categories=False):

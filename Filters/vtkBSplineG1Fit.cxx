@@ -213,11 +213,7 @@ int vtkBSplineG1Fit::RequestData(
   if (!status)
   {
     model->Initialize();
-    if (status.code() != bsr::StatusCode::Cancelled)
-    {
-      vtkErrorMacro(<< status.message());
-    }
-    return 0;
+    return bsr::notDelivered(this, status);
   }
   bsr::controlNetTo(result->Model, net);
   reportTo(result->Patches, table);

@@ -121,12 +121,7 @@ int vtkClosing::RequestData(
   auto closed = closeImage(input, *values, options, monitor);
   if (!closed)
   {
-    if (closed.status().code() == bsr::StatusCode::Cancelled)
-    {
-      return 1;
-    }
-    vtkErrorMacro(<< closed.status().message());
-    return 0;
+    return bsr::notDelivered(this, closed.status());
   }
   bsr::imageGeometry(input, closed->Closed.Extent, output);
   outputs->GetInformationObject(0)->Set(

@@ -125,12 +125,7 @@ int vtkEDTClassify::RequestData(
   if (!sides)
   {
     output->Initialize();
-    if (sides.status().code() == bsr::StatusCode::Cancelled)
-    {
-      return 1;
-    }
-    vtkErrorMacro(<< sides.status().message());
-    return 0;
+    return bsr::notDelivered(this, sides.status());
   }
   output->ShallowCopy(surface);
   attach(*sides, output);

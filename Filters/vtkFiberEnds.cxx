@@ -112,12 +112,7 @@ int vtkFiberEnds::RequestData(
   const auto ends = findEnds(surface, raw, monitor);
   if (!ends)
   {
-    if (ends.status().code() == bsr::StatusCode::Cancelled)
-    {
-      return 1;
-    }
-    vtkErrorMacro(<< ends.status().message());
-    return 0;
+    return bsr::notDelivered(this, ends.status());
   }
   output->GetFieldData()->ShallowCopy(surface->GetFieldData());
   bsr::triangleMeshTo(ends->Surface, output);

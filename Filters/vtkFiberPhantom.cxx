@@ -170,11 +170,7 @@ int vtkFiberPhantom::RequestData(
     const auto values = bsr::fiberImage(*phantom, extent, monitor);
     if (!values)
     {
-      if (values.status().code() != bsr::StatusCode::Cancelled)
-      {
-        vtkErrorMacro(<< values.status().message());
-      }
-      return 0;
+      return bsr::notDelivered(this, values.status());
     }
     Internals::image(*values, extent, this->Spacing, image);
   }

@@ -217,10 +217,11 @@ int vtkFiberReconstruction::RequestData(
     {
       vtkDataObject::GetData(outputs, port)->Initialize();
     }
-    if (!stages.message().empty())
+    if (stages.message().empty())
     {
-      vtkErrorMacro(<< stages.stage() << ": " << plainMessage(stages.message()));
+      return 1; // cancelled
     }
+    vtkErrorMacro(<< stages.stage() << ": " << plainMessage(stages.message()));
     return 0;
   };
 

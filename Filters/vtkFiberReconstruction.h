@@ -20,7 +20,7 @@
  * - 5 raw surface with the point arrays `Depth`, `Side`, `QuadId`, `UV`, `QuadDistance`.
  *
  * When a stage fails, its message is reported as this filter's error with the stage's name in
- * front, and every output is empty.
+ * front, and every output is empty; so it is when the filter is cancelled (AbortExecute).
  *
  * @warning Only the largest object of the volume is reconstructed.
  * @sa vtkClosing vtkEDTClassify vtkFiberEnds vtkQuadRemesh vtkPartitionToQuads vtkBSplineG1Fit

@@ -121,11 +121,7 @@ int vtkPartitionToQuads::RequestData(
   if (!result)
   {
     output->Initialize();
-    if (result.status().code() != bsr::StatusCode::Cancelled)
-    {
-      vtkErrorMacro(<< result.status().message());
-    }
-    return 0;
+    return bsr::notDelivered(this, result.status());
   }
   output->ShallowCopy(input);
   attach(*result, output);

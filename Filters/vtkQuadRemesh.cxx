@@ -76,11 +76,7 @@ int vtkQuadRemesh::RequestData(
   auto layout = bsr::quadRemesh(*mesh, options, monitor);
   if (!layout)
   {
-    if (layout.status().code() != bsr::StatusCode::Cancelled)
-    {
-      vtkErrorMacro(<< layout.status().message());
-    }
-    return 0;
+    return bsr::notDelivered(this, layout.status());
   }
   bsr::quadMeshTo(layout->Mesh, output);
   addArray<vtkDoubleArray>(output->GetCellData(), "ScaledJacobian", layout->Report.Jacobian);

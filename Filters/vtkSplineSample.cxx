@@ -33,11 +33,7 @@ int vtkSplineSample::RequestData(
   if (!status)
   {
     output->Initialize();
-    if (status.code() != bsr::StatusCode::Cancelled)
-    {
-      vtkErrorMacro(<< status.message());
-    }
-    return 0;
+    return bsr::notDelivered(this, status);
   }
   return 1;
 }

@@ -1,6 +1,7 @@
 #include "Adapters/BSRMonitor.h"
 
 #include <vtkAlgorithm.h>
+#include <vtkSetGet.h>
 #include <vtkVersionMacros.h>
 
 namespace bsr
@@ -17,5 +18,15 @@ bool AlgorithmMonitor::cancelled()
 #else
   return this->Algorithm->GetAbortExecute() != 0;
 #endif
+}
+
+int notDelivered(vtkAlgorithm* algorithm, const Status& status)
+{
+  if (status.code() == StatusCode::Cancelled)
+  {
+    return 1;
+  }
+  vtkErrorWithObjectMacro(algorithm, << status.message());
+  return 0;
 }
 } // namespace bsr

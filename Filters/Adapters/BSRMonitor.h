@@ -24,6 +24,12 @@ private:
   double From;
   double To;
 };
+
+/**
+ * What RequestData returns when Core did not deliver: a failure's message becomes the algorithm's
+ * error and 0 is returned; a cancelled run is no error (1). The caller empties its outputs.
+ */
+int notDelivered(vtkAlgorithm* algorithm, const Status& status);
 } // namespace bsr
 
 #endif

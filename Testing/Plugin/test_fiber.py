@@ -69,10 +69,27 @@ def bad_input():
     check_equal(fetch(fiber).GetNumberOfCells(), 0, "cells after an error")
 
 
+def cancelled(phantom):
+    """Cancelled at half of the work: no error, nothing in any output; the next run is whole."""
+    fiber = reconstruct(phantom, Resolution=2)
+    algorithm = fiber.GetClientSideObject()
+    tag = algorithm.AddObserver("ProgressEvent", lambda caller, _: caller.GetProgress() > 0.5 and caller.SetAbortExecute(1))
+    with Errors(fiber) as errors:
+        fiber.UpdatePipeline()
+    errors.check_none()
+    for port in (0, 1, 3, 4, 5):
+        check_equal(servermanager.Fetch(fiber, idx=port).GetNumberOfPoints(), 0, "points of port %d after a cancel" % port)
+    algorithm.RemoveObserver(tag)
+    algorithm.SetAbortExecute(0)
+    fiber.Resolution = 3
+    check(fetch(fiber).GetNumberOfCells() > 0, "the run after a cancelled one gives a model")
+
+
 if __name__ == "__main__":
     fiber_phantom = FiberPhantom(Seed=2)
     fiber_phantom.UpdatePipeline()
     expected_bits = ports_and_arrays(fiber_phantom)
     only_outer_and_kept_closed(fiber_phantom)
     bad_input()
+    cancelled(fiber_phantom)
     the_same_on_one_thread(expected_bits)
