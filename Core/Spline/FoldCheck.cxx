@@ -26,21 +26,30 @@ PatchShape shapeOf(const NetEvaluator& surface, Index patch, const std::vector<B
     }
   }
   PatchShape s;
-  s.Folded = !(least >= 1e-5 * mean) || mean == 0.0;
-  for (int j = 0; j < Samples; ++j)
-  {
-    for (int i = 0; i < Samples; ++i)
-    {
-      const Vec3& n = normal[j * Samples + i];
-      s.Folded = s.Folded || (i > 0 && n.dot(normal[j * Samples + i - 1]) <= 0.0) ||
-                 (j > 0 && n.dot(normal[(j - 1) * Samples + i]) <= 0.0);
-    }
-  }
+  s.Folded = normalsFold(normal, Samples);
   s.MinJacobian = mean > 0.0 ? least / mean : 0.0;
   s.MinJacobian *= s.Folded ? -1.0 : 1.0;
   return s;
 }
 } // namespace
+
+bool normalsFold(const std::vector<Vec3>& normals, int grid)
+{
+  double mean = 0.0;
+  double least = std::numeric_limits<double>::max();
+  for (const Vec3& n : normals)
+  {
+    mean += n.norm() / static_cast<double>(normals.size());
+    least = std::min(least, n.norm());
+  }
+  bool folded = !(least >= 1e-5 * mean) || mean == 0.0;
+  for (int i = 0; i < grid * grid; ++i)
+  {
+    folded = folded || (i % grid > 0 && normals[i].dot(normals[i - 1]) <= 0.0) ||
+             (i >= grid && normals[i].dot(normals[i - grid]) <= 0.0);
+  }
+  return folded;
+}
 
 std::vector<PatchShape> checkShapes(const PatchNet& net, const NetPoints& surface)
 {

@@ -12,6 +12,9 @@ struct PatchShape
   double MinJacobian = 1.0;
 };
 
+/// Whether neighboring normals of a grid x grid turn by more than 90 degrees, or one vanishes.
+bool normalsFold(const std::vector<Vec3>& normals, int grid);
+
 std::vector<PatchShape> checkShapes(const PatchNet& net, const NetPoints& surface);
 
 /// Largest angle in degrees between the normals of two patches along their common sides.

@@ -14,6 +14,9 @@ namespace bsr
 {
 namespace
 {
+/// Inner points that cover less of the layout are no lumen's.
+constexpr double LeastCoverage = 0.4;
+
 Status checkOptions(const G1FitOptions& o)
 {
   if (o.Segments < 3 || o.Segments > 16)
@@ -160,6 +163,13 @@ private:
                   " points of it; only the outer shell was fitted.");
         break;
       }
+      if (side == 1 && coverage(points, net) < LeastCoverage)
+      {
+        this->say("No inner wall: its points cover only " +
+                  std::to_string(std::lround(100.0 * coverage(points, net))) +
+                  " % of the layout, which is no lumen; only the outer shell was fitted.");
+        break;
+      }
       if (side == 0 && tooFew(points, net))
       {
         return Status::invalidInput(
@@ -173,6 +183,7 @@ private:
       {
         // Where the lumen's wall has few points it follows the outer wall.
         shellOptions.RestShape = &shells[0].Net;
+        this->gaugeWall(net, shells[0], points, shellOptions);
       }
       auto fit = fitShell(layout, *solver, std::move(points),
         rimSamples(complex, this->Full.Points, true), shellOptions, part);
@@ -180,10 +191,53 @@ private:
       {
         return fit.status();
       }
+      if (side == 1 && !this->isSound(net, shells[0], *fit))
+      {
+        break;
+      }
       shells.push_back(std::move(*fit));
     }
     this->finish(complex, net, shells);
     return std::move(this->Out);
+  }
+
+  /// Share of the patches' quarters along u and v (4 x 4 a patch) that have points, over what as
+  /// many points would hit at random.
+  static double coverage(const std::vector<FitPoint>& points, const PatchNet& net)
+  {
+    std::vector<char> hit(16 * static_cast<std::size_t>(net.patches()), 0);
+    for (const FitPoint& p : points)
+    {
+      const int u = std::min(3, static_cast<int>(4.0 * p.U));
+      const int v = std::min(3, static_cast<int>(4.0 * p.V));
+      hit[16 * static_cast<std::size_t>(p.Patch) + 4 * v + u] = 1;
+    }
+    const auto cells = static_cast<double>(hit.size());
+    const double random = cells * (1.0 - std::exp(-static_cast<double>(points.size()) / cells));
+    return std::min(1.0, static_cast<double>(std::count(hit.begin(), hit.end(), 1)) / random);
+  }
+
+  /// The thickness that the wall must have, and has where nothing is known of it.
+  void gaugeWall(const PatchNet& net, const ShellFitResult& outer,
+    const std::vector<FitPoint>& points, ShellFitOptions& o) const
+  {
+    o.TypicalWall = medianWall(WallGauge(net, outer.Net), points);
+    o.LeastWall = 0.2 * o.TypicalWall;
+  }
+
+  /// An inner shell that crosses the outer one whatever was tried is not delivered.
+  bool isSound(const PatchNet& net, const ShellFitResult& outer, const ShellFitResult& inner)
+  {
+    this->Out.MinimumWall = minimumWall(net, WallGauge(net, outer.Net), inner.Net);
+    if (this->Out.MinimumWall > 0.0)
+    {
+      return true;
+    }
+    this->say(
+      "No inner wall: it would cross the outer one by " + std::to_string(-this->Out.MinimumWall) +
+      "; only the outer shell was fitted. Its points may be no lumen's; else use more quads.");
+    this->Out.MinimumWall = 0.0;
+    return false;
   }
 
   static bool tooFew(const std::vector<FitPoint>& points, const PatchNet& net)
@@ -219,22 +273,13 @@ private:
       squares += t.Rms * t.Rms * static_cast<double>(t.Points);
       count += static_cast<double>(t.Points);
       this->Out.Max = std::max(this->Out.Max, t.Max);
-      this->Out.FoldedPatches += shells[s].Folded;
+      this->Out.FoldedPatches += shells[s].Folded + shells[s].FoldedWalls;
       this->Out.MaxNormalJump =
         std::max(this->Out.MaxNormalJump, largestNormalJump(complex, net, shells[s].Net));
     }
     this->Out.Rms = count > 0 ? std::sqrt(squares / count) : 0.0;
     this->Out.Model =
       buildModel(complex, net, shells[0].Net, shells.size() > 1 ? &shells[1].Net : nullptr);
-    if (shells.size() > 1)
-    {
-      this->Out.MinimumWall = minimumWall(net, shells[0].Net, shells[1].Net);
-      if (this->Out.MinimumWall < 0.0)
-      {
-        this->say("The shells cross: the inner one lies outside the outer one by up to " +
-                  std::to_string(-this->Out.MinimumWall) + "; use more fairing or more quads.");
-      }
-    }
     PatchReport wall;
     wall.Side = Shell::Wall;
     this->Out.Patches.resize(this->Out.Model.Patches.size(), wall);

@@ -3,6 +3,7 @@
 #include "Spline/DataBalance.h"
 #include "Spline/FoldCheck.h"
 #include "Spline/RobustWeights.h"
+#include "Spline/ShellRepair.h"
 
 #include <cmath>
 
@@ -33,6 +34,14 @@ public:
     {
       this->Equations.RestShape = *options.RestShape;
     }
+    this->Vertices = layout.Vertices;
+    this->Judge =
+      std::make_unique<ShellFaults>(this->Complex, this->Net, options.RestShape, options.LeastWall);
+    if (options.RestShape)
+    {
+      const auto aligned = alignedRim(this->Complex, this->Net, *options.RestShape);
+      this->Rim.insert(this->Rim.end(), aligned.begin(), aligned.end());
+    }
     this->PatchSize = meanSize(*layout.Vertices);
   }
 
@@ -62,7 +71,7 @@ public:
       }
     }
     this->Watch.progress(0.9);
-    if (Status s = this->unfold(schedule.back()); !s)
+    if (Status s = this->repair(schedule.back()); !s)
     {
       return s;
     }
@@ -107,7 +116,7 @@ private:
       p.U = uv[r.HalfEdge % 4][0];
       p.V = uv[r.HalfEdge % 4][1];
       p.Position = r.Target;
-      p.Weight = share;
+      p.Weight = share * r.Weight;
       p.Fixed = true;
       if (directed)
       {
@@ -116,16 +125,19 @@ private:
       }
       all.push_back(p);
     }
+    all.insert(all.end(), this->Pushes.begin(), this->Pushes.end());
     return all;
   }
 
   void assemble()
   {
-    this->TotalWeight = 0.0;
+    double sum = 0.0;
     for (const FitPoint& p : this->Points)
     {
-      this->TotalWeight += p.weight();
+      sum += p.weight();
     }
+    // In the repair the other points keep their say whatever is dropped.
+    this->TotalWeight = this->Repairing ? this->TotalWeight : sum;
     std::vector<FitPoint> all = this->withRim();
     const auto first = sortByPatch(all, this->Net.patches());
     this->Equations.Data = dataBlocks(this->Net, all, first);
@@ -199,50 +211,146 @@ private:
     return Status::ok();
   }
 
-  /// The patches that are folded; keeps their number.
-  std::vector<Index> foldedPatches()
-  {
-    const auto shapes = checkShapes(this->Net, this->Surface);
-    std::vector<Index> folded;
-    for (Index f = 0; f < this->Net.patches(); ++f)
-    {
-      if (shapes[f].Folded)
-      {
-        folded.push_back(f);
-      }
-    }
-    this->Result_.Folded = static_cast<int>(folded.size());
-    return folded;
-  }
-
-  /// First fairs folded patches and their neighbors more, then pulls them to a smooth reference,
-  /// both stronger from round to round, until none is folded. Parameters and weights stay.
-  Status unfold(double lambda)
+  /// Parameters stay; what helped least comes first, so that healthy data are touched least.
+  Status repair(double lambda)
   {
     constexpr int FairingRounds = 4;
-    constexpr int Rounds = 14;
-    std::vector<Index> folded = this->foldedPatches();
-    this->Result_.Unfolded = this->Result_.Folded;
-    for (int round = 0; round < Rounds && !folded.empty(); ++round)
+    constexpr int PullRounds = 12;
+    constexpr int Rounds = 22;
+    this->Repairing = true;
+    this->Judge->look(this->Surface);
+    this->Result_.Repaired = static_cast<int>(this->Judge->BadPatches.size());
+    NetPoints best = this->Surface;
+    double bestScore = this->Judge->score();
+    for (int round = 0; round<Rounds&& this->Judge->score()> 0.0; ++round)
     {
-      if (round == FairingRounds)
+      if (round == FairingRounds || round == PullRounds)
       {
-        if (Status s = this->findReference(); !s)
+        if (Status s = round == PullRounds ? this->findSafeShape() : this->findReference(); !s)
         {
           return s;
         }
       }
-      for (const Index f : folded)
+      for (const Index f : this->Judge->BadPatches)
       {
-        round < FairingRounds ? this->stiffen(f) : this->pull(f);
+        round < FairingRounds ? this->stiffen(f) : this->pull(f, 1 + (round - 4) / 6);
       }
+      this->hold(round >= PullRounds);
       if (Status s = this->solve(lambda); !s)
       {
         return s;
       }
-      folded = this->foldedPatches();
+      this->Judge->look(this->Surface);
+      if (this->Judge->score() < bestScore)
+      {
+        bestScore = this->Judge->score();
+        best = this->Surface;
+      }
     }
+    this->Surface = std::move(best);
+    return this->blend(bestScore);
+  }
+
+  /// Thin places are pushed inward, data that say otherwise or keep patches folded are dropped.
+  void hold(bool drop)
+  {
+    const double share = this->TotalWeight / this->Net.patches() / 80.0;
+    for (FitPoint p : this->Judge->Thin)
+    {
+      p.Weight = share;
+      this->Pushes.push_back(p);
+    }
+    std::vector<char> thin(this->Net.patches(), 0);
+    for (const FitPoint& p : this->Judge->Thin)
+    {
+      thin[p.Patch] = 1;
+    }
+    std::vector<char> bad(this->Net.patches(), 0);
+    for (const Index f : this->Judge->BadPatches)
+    {
+      bad[f] = drop;
+    }
+    for (FitPoint& p : this->Points)
+    {
+      if (bad[p.Patch] || (thin[p.Patch] && this->Judge->tooClose(p.Position)))
+      {
+        p.Robust = 0.0;
+      }
+    }
+    for (const Index h : this->Judge->Walls)
+    {
+      for (RimSample& r : this->Rim)
+      {
+        r.Weight *= r.HalfEdge == h && r.Weight < 1e4 ? 2.0 : 1.0;
+      }
+    }
+  }
+
+  /// The way out that always leads to the safe shape: nets of a space may be mixed.
+  Status blend(double bestScore)
+  {
+    const NetPoints fitted = this->Surface;
+    if (bestScore >= ShellFaults::Severe)
+    {
+      if (Status s = this->findSafeShape(); !s)
+      {
+        return s;
+      }
+      for (int i = 1; i <= 10 && bestScore >= ShellFaults::Severe; ++i)
+      {
+        const NetPoints mixed = (1.0 - 0.1 * i) * fitted + 0.1 * i * this->Equations.Reference;
+        this->Judge->look(mixed);
+        if (this->Judge->score() < bestScore)
+        {
+          bestScore = this->Judge->score();
+          this->Surface = mixed;
+        }
+      }
+    }
+    this->Judge->look(this->Surface);
+    this->Result_.Folded = this->Judge->Folded;
+    this->Result_.FoldedWalls = static_cast<int>(this->Judge->Walls.size());
     return Status::ok();
+  }
+
+  /// The layout itself, or the outer shell moved inward, smoothed until nothing is wrong with it.
+  Status findSafeShape()
+  {
+    double depth = std::max(this->Options.TypicalWall, 1.5 * this->Options.LeastWall);
+    ShellFaults judge = *this->Judge;
+    FitEquations e = this->Equations;
+    e.Pull.assign(this->Net.patches(), 0.0);
+    e.Stiffness.assign(this->Net.patches(), 1.0);
+    double least = std::numeric_limits<double>::max();
+    for (int round = 0; round < 6 && least > 0.0; ++round)
+    {
+      std::vector<FitPoint> targets = this->Options.RestShape
+                                        ? shapePoints(this->Net, *this->Options.RestShape, depth)
+                                        : layoutPoints(this->Complex, *this->Vertices);
+      const auto first = sortByPatch(targets, this->Net.patches());
+      e.Data = dataBlocks(this->Net, targets, first);
+      e.TotalWeight = static_cast<double>(targets.size());
+      auto net = this->Solver.solve(e.blocks(this->Net, 0.5, 100.0));
+      if (!net)
+      {
+        return net.status();
+      }
+      judge.look(*net);
+      if (judge.score() < least)
+      {
+        least = judge.score();
+        this->Equations.Reference = *net;
+      }
+      for (const Index f : judge.BadPatches)
+      {
+        for (const Index g : this->ring(f))
+        {
+          e.Stiffness[g] = std::min(e.Stiffness[g] * 4.0, 1e4);
+        }
+      }
+      depth = std::max(0.7 * depth, 1.5 * this->Options.LeastWall);
+    }
+    return this->Watch.cancelled() ? Status::cancelled() : Status::ok();
   }
 
   /// Faces of a patch's neighborhood by corners, each once.
@@ -270,9 +378,22 @@ private:
     }
   }
 
-  void pull(Index f)
+  void pull(Index f, int rings)
   {
-    for (const Index g : this->ring(f))
+    std::vector<Index> faces{f};
+    for (int i = 0; i < rings; ++i)
+    {
+      std::vector<Index> wider;
+      for (const Index g : faces)
+      {
+        const auto around = this->ring(g);
+        wider.insert(wider.end(), around.begin(), around.end());
+      }
+      std::sort(wider.begin(), wider.end());
+      wider.erase(std::unique(wider.begin(), wider.end()), wider.end());
+      faces = std::move(wider);
+    }
+    for (const Index g : faces)
     {
       double& s = this->Equations.Pull[g];
       s = std::min(std::max(s * (g == f ? 4.0 : 2.0), 0.3 * this->K), 1e4 * this->K);
@@ -295,15 +416,19 @@ private:
   const QuadComplex& Complex;
   const PatchNet& Net;
   FitSolver& Solver;
-  const std::vector<RimSample>& Rim;
+  std::vector<RimSample> Rim;
+  std::vector<FitPoint> Pushes; ///< hold the wall's least thickness
+  std::unique_ptr<ShellFaults> Judge;
   const ShellFitOptions& Options;
   Monitor& Watch;
   std::vector<FitPoint> Points;
   FitEquations Equations;
+  const std::vector<Vec3>* Vertices = nullptr;
   NetPoints Surface;
   ShellFitResult Result_;
   double K = FirstDataWeight;
   double TotalWeight = 0.0;
+  bool Repairing = false;
   double PatchSize = 1.0;
 };
 } // namespace

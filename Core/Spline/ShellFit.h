@@ -14,6 +14,7 @@ struct RimSample
   Vec3 Target = Vec3::Zero();
   /// If not zero: only the component along this unit direction counts.
   Vec3 Direction = Vec3::Zero();
+  double Weight = 1.0;
 };
 
 struct ShellFitOptions
@@ -26,6 +27,9 @@ struct ShellFitOptions
   int ExtraPasses = 2;     ///< repetitions of the last pass
   /// Where given, fairing acts on the difference to this net: a shell whose shape this one shares.
   const NetPoints* RestShape = nullptr;
+  /// With a RestShape: it is the outer shell, and this one keeps at least this distance inside it.
+  double LeastWall = 0.0;
+  double TypicalWall = 0.0; ///< its thickness where nothing is known of this shell
 };
 
 struct ShellFitResult
@@ -35,7 +39,8 @@ struct ShellFitResult
   double DataWeight = 0.0;      ///< K used
   double RobustScale = 0.0;     ///< sigma of the residuals, world units
   int Folded = 0;               ///< patches still folded at the end
-  int Unfolded = 0;             ///< patches that needed the cure
+  int FoldedWalls = 0;          ///< ruled walls to the outer shell still folded at the end
+  int Repaired = 0;             ///< patches that needed the cure
 };
 
 /// Everything about the layout that both shells share.
@@ -48,7 +53,9 @@ struct ShellLayout
 
 /**
  * Fits one shell: for each lambda solve, correct parameters, weigh outliers down; finds the balance
- * K; unfolds patches by local fairing.
+ * K; then repairs what is folded, crosses the outer shell or makes a wall fold, in steps of
+ * growing force: local fairing, a pull to a smooth fit, a pull to a safe shape (the layout, or the
+ * outer shell moved inward) with data dropped, a blend of the whole shell with the safe shape.
  */
 Result<ShellFitResult> fitShell(const ShellLayout& layout, FitSolver& solver,
   std::vector<FitPoint> points, const std::vector<RimSample>& rim, const ShellFitOptions& options,

@@ -302,6 +302,79 @@ TEST(G1Fit, HollowTubeWithOpenEnds)
   EXPECT_EQ(fitted(p, m, closed).OpenEndCount, 0);
 }
 
+TEST(G1Fit, ShellsThatWouldCrossAreKeptApart)
+{
+  const QuadMesh m = cappedTube(8);
+  PartitionedPoints p = sample(
+    m, 10, [](const Vec3& x) { return toTube(x, 1.0); }, 0.0, 0);
+  // A bump of the lumen's points leaves the tube over about a tenth of its wall.
+  const auto bumped = [](const Vec3& x)
+  { return toTube(x, 0.7 + (x[1] > 0.3 && std::abs(x[0] - 2.0) < 0.8 ? 0.5 : 0.0)); };
+  append(p, sample(m, 10, bumped, 0.0, 1));
+  const G1FitResult r = fitted(p, m, {});
+  ASSERT_EQ(r.Shells.size(), 2u) << r.Message;
+  EXPECT_GT(r.MinimumWall, 0.0);
+  EXPECT_EQ(r.FoldedPatches, 0);
+  for (const SplinePatch& patch : r.Model.Patches)
+  {
+    for (int k = 0; k < 49 && patch.Side == Shell::Inner; ++k)
+    {
+      const Vec3 x = evaluatePatch(r.Model, patch, k % 7 / 6.0, k / 7 / 6.0).Point;
+      EXPECT_LT(std::hypot(x[1], x[2]), 1.0);
+    }
+  }
+}
+
+TEST(G1Fit, InnerPointsOutsideAreNoLumen)
+{
+  const QuadMesh m = cappedTube(8);
+  PartitionedPoints p = sample(
+    m, 10, [](const Vec3& x) { return toTube(x, 1.0); }, 0.0, 0);
+  append(p, sample(
+              m, 10, [](const Vec3& x) { return toTube(x, 1.3); }, 0.0, 1));
+  const G1FitResult r = fitted(p, m, {});
+  EXPECT_TRUE(r.Shells.size() == 1u || r.MinimumWall > 0.0);
+  EXPECT_EQ(r.FoldedPatches, 0);
+}
+
+TEST(G1Fit, ScatteredInnerPointsGiveNoInnerShell)
+{
+  const QuadMesh m = meshes::sphere(2);
+  PartitionedPoints p = sample(m, 10, toSphere, 0.0, 0);
+  PartitionedPoints inner = sample(
+    m, 10, [](const Vec3& x) { return Vec3(0.7 * x.normalized()); }, 0.0, 1);
+  for (Index& q : inner.QuadId)
+  {
+    q = q % 4 == 0 ? q : -1;
+  }
+  append(p, inner);
+  const G1FitResult r = fitted(p, m, {});
+  EXPECT_EQ(r.Shells.size(), 1u);
+  EXPECT_NE(r.Message.find("cover only"), std::string::npos) << r.Message;
+}
+
+TEST(G1Fit, WildPointsFoldNoPatch)
+{
+  // Parameters that contradict the positions: without repair these fold.
+  const QuadMesh m = meshes::sphere(2);
+  PartitionedPoints p = sample(m, 8, toSphere, 0.002);
+  std::mt19937 random(5);
+  for (std::size_t i = 0; i < p.Points.size(); ++i)
+  {
+    if (p.QuadId[i] % 9 == 0)
+    {
+      p.UV[i] = Vec2(random() / 4294967296.0, random() / 4294967296.0);
+      p.Points[i] *= 1.0 + 0.3 * (random() / 4294967296.0);
+    }
+  }
+  G1FitOptions o;
+  o.DataWeight = 1e5;
+  o.Robust = false;
+  const G1FitResult r = fitted(p, m, o);
+  EXPECT_EQ(r.FoldedPatches, 0);
+  EXPECT_LE(r.MaxNormalJump, 1e-6);
+}
+
 TEST(G1Fit, InwardLayoutsAreTurned)
 {
   QuadMesh m = meshes::sphere(1);
