@@ -280,6 +280,11 @@ private:
     this->Out.Rms = count > 0 ? std::sqrt(squares / count) : 0.0;
     this->Out.Model =
       buildModel(complex, net, shells[0].Net, shells.size() > 1 ? &shells[1].Net : nullptr);
+    if (this->Out.FoldedPatches > 0)
+    {
+      this->say(std::to_string(this->Out.FoldedPatches) +
+                " patches are still folded; use another number of quads.");
+    }
     PatchReport wall;
     wall.Side = Shell::Wall;
     this->Out.Patches.resize(this->Out.Model.Patches.size(), wall);
