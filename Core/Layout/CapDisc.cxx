@@ -126,6 +126,8 @@ bool capDisc(LayoutDraft& draft, std::vector<Index> loop, Index region)
   std::vector<Vec3> rim;
   for (Index v : loop)
   {
+    // With reserve(), GCC 12 warns of a free that is none.
+    // NOLINTNEXTLINE(performance-inefficient-vector-operation)
     rim.push_back(draft.Mesh.Points[v]);
   }
   Pattern best;

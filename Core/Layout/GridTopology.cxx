@@ -1,6 +1,7 @@
 #include "Layout/GridTopology.h"
 
 #include <cmath>
+#include <numeric>
 
 namespace bsr
 {
@@ -125,11 +126,8 @@ private:
   /// Takes back cuts that end at regular vertices.
   void prune()
   {
-    std::vector<Index> stack;
-    for (Index v = 0; v < this->S.vertices(); ++v)
-    {
-      stack.push_back(v);
-    }
+    std::vector<Index> stack(this->S.vertices());
+    std::iota(stack.begin(), stack.end(), Index(0));
     while (!stack.empty())
     {
       const Index v = stack.back();

@@ -19,7 +19,7 @@ void addForm(IntegerForm& a, const IntegerForm& b, std::int64_t factor);
 class IntegerKernel
 {
 public:
-  explicit IntegerKernel(Index variables) : Next(variables), Variables(variables) {}
+  explicit IntegerKernel(Index variables) : Next(variables) {}
 
   /// Demands that the form is zero.
   void require(IntegerForm row);
@@ -33,7 +33,6 @@ private:
   IntegerForm substituted(IntegerForm row) const;
 
   Index Next;
-  Index Variables;
   Index Free = 0;
   std::map<Index, IntegerForm> Replaced; ///< in terms of variables replaced later or never
   std::vector<Index> Order;              ///< of replacement

@@ -453,6 +453,7 @@ Result<std::vector<TriangleSurface>> buildSurfaces(
   }
   std::sort(order.begin(), order.end());
   std::vector<TriangleSurface> sorted;
+  sorted.reserve(order.size());
   for (const auto& o : order)
   {
     sorted.push_back(std::move(surfaces[o.second]));

@@ -32,6 +32,7 @@ double neighborCorrelation(
   }
   const auto r = residuals(net, surface, counting);
   std::vector<Vec3> places;
+  places.reserve(counting.size());
   for (const FitPoint& p : counting)
   {
     places.push_back(p.Position);

@@ -55,6 +55,7 @@ std::vector<PatchShape> checkShapes(const PatchNet& net, const NetPoints& surfac
 {
   const NetEvaluator evaluator(net, surface);
   std::vector<BasisValues> basis;
+  basis.reserve(Samples);
   for (int i = 0; i < Samples; ++i)
   {
     basis.push_back(evaluator.basis(i / (Samples - 1.0)));

@@ -69,6 +69,7 @@ std::map<Index, std::vector<Index>> largestGroups(
 bool isDisc(const QuadMesh& quads, const std::vector<Index>& group)
 {
   std::vector<std::array<Index, 4>> own;
+  own.reserve(group.size());
   for (const Index f : group)
   {
     own.push_back(quads.Quads[f]);

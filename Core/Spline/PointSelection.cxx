@@ -17,7 +17,9 @@ std::vector<Vec3> sampleQuads(const QuadMesh& quads, const CutLayout& cut)
   {
     for (int k = 0; k < Grid * Grid; ++k)
     {
-      samples.push_back(bilinearPoint(quads, q, k % Grid / (Grid - 1.0), k / Grid / (Grid - 1.0)));
+      const int column = k % Grid;
+      const int row = k / Grid;
+      samples.push_back(bilinearPoint(quads, q, column / (Grid - 1.0), row / (Grid - 1.0)));
     }
   }
   return samples;
@@ -44,8 +46,10 @@ void placeCapPoints(
     const auto [nearest, distance2] = tree.nearest(p.Position);
     const int local = nearest % (Grid * Grid);
     p.Patch = std::sqrt(distance2) <= reach ? nearest / (Grid * Grid) : -1;
-    p.U = local % Grid / (Grid - 1.0);
-    p.V = local / Grid / (Grid - 1.0);
+    const int column = local % Grid;
+    const int row = local / Grid;
+    p.U = column / (Grid - 1.0);
+    p.V = row / (Grid - 1.0);
   }
 }
 } // namespace

@@ -87,8 +87,10 @@ std::array<int, 2> resolutionFor(const SplineModel& model, const SplinePatch& pa
       for (int k = 0; k < 25; ++k)
       {
         // Stay inside the piece: second derivatives jump at its ends.
-        const double a = std::clamp(k % 5 / 4.0, 1e-9, 1.0 - 1e-9);
-        const double b = std::clamp(k / 5 / 4.0, 1e-9, 1.0 - 1e-9);
+        const int column = k % 5;
+        const int row = k / 5;
+        const double a = std::clamp(column / 4.0, 1e-9, 1.0 - 1e-9);
+        const double b = std::clamp(row / 4.0, 1e-9, 1.0 - 1e-9);
         const SurfacePoint s =
           evaluatePatch(model, patch, ends[0][i] + a * lu, ends[1][j] + b * lv);
         uu = std::max(uu, s.Duu.norm() * lu * lu);
