@@ -142,8 +142,8 @@ void copyField(vtkFieldData* from, vtkFieldData* to, std::initializer_list<const
   }
 }
 
-/// Marks the points of the side that is not wanted as belonging to neither wall.
-void keepSide(vtkPolyData* surface, unsigned char unwanted)
+/// Replaces a value of the array Side, e.g. by 255: neither wall.
+void relabelSide(vtkPolyData* surface, unsigned char from, unsigned char to)
 {
   auto* old = surface->GetPointData()->GetArray("Side");
   vtkNew<vtkUnsignedCharArray> side;
@@ -152,7 +152,7 @@ void keepSide(vtkPolyData* surface, unsigned char unwanted)
   for (vtkIdType i = 0; i < old->GetNumberOfTuples(); ++i)
   {
     const auto s = static_cast<unsigned char>(old->GetComponent(i, 0));
-    side->SetValue(i, s == unwanted ? 255 : s);
+    side->SetValue(i, s == from ? to : s);
   }
   surface->GetPointData()->AddArray(side);
 }
@@ -268,7 +268,7 @@ int vtkFiberReconstruction::RequestData(
   sides->ShallowCopy(classified);
   if (this->Sides != BOTH)
   {
-    keepSide(sides, this->Sides == OUTER_ONLY ? 1 : 0);
+    relabelSide(sides, this->Sides == OUTER_ONLY ? 1 : 0, 255);
   }
 
   vtkNew<vtkFiberEnds> ends;
@@ -301,8 +301,14 @@ int vtkFiberReconstruction::RequestData(
     return fail();
   }
 
+  vtkNew<vtkPolyData> partitioned;
+  partitioned->ShallowCopy(partition->GetOutputDataObject(0));
+  if (this->Sides == INNER_ONLY)
+  {
+    relabelSide(partitioned, 1, 0); // the one shell of a fit is its outer one
+  }
   vtkNew<vtkBSplineG1Fit> fit;
-  fit->SetInputConnection(0, partition->GetOutputPort());
+  fit->SetInputData(0, partitioned);
   fit->SetInputConnection(1, remesh->GetOutputPort());
   fit->SetContinuity(this->Continuity);
   fit->SetSegmentsPerSide(this->SegmentsPerSide);

@@ -88,7 +88,10 @@ public:
   ///@}
 
   ///@{
-  /// BOTH (default), OUTER_ONLY or INNER_ONLY; walls are made only with both.
+  /**
+   * BOTH (default), OUTER_ONLY or INNER_ONLY. One side alone becomes a closed body without walls,
+   * whose patches are of shell 0.
+   */
   vtkSetClampMacro(Sides, int, BOTH, INNER_ONLY);
   vtkGetMacro(Sides, int);
   ///@}

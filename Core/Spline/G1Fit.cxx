@@ -312,6 +312,28 @@ double enclosedVolume(const QuadMesh& quads)
   }
   return volume;
 }
+
+/// Fits; a body of one shell only is fitted again with closed ends, for it would have no walls
+/// there.
+Result<G1FitResult> fitBody(
+  const PartitionedPoints& points, const QuadMesh& quads, G1FitOptions options, Monitor& monitor)
+{
+  SubMonitor first(monitor, 0.0, 0.6);
+  auto fit = Fitter(points, quads, options, first).run();
+  if (!fit || fit->OpenEndCount == 0 || fit->Shells.size() > 1)
+  {
+    return fit;
+  }
+  options.Ends = OpenEnds::KeepClosed;
+  const std::string why = fit->Message;
+  SubMonitor second(monitor, 0.6, 1.0);
+  fit = Fitter(points, quads, options, second).run();
+  if (fit)
+  {
+    fit->Message = why + " Its ends were kept closed.";
+  }
+  return fit;
+}
 } // namespace
 
 Result<G1FitResult> fitG1(const PartitionedPoints& points, const QuadMesh& quads,
@@ -323,7 +345,7 @@ Result<G1FitResult> fitG1(const PartitionedPoints& points, const QuadMesh& quads
     { return std::all_of(q.begin(), q.end(), [last](Index i) { return i >= 0 && i < last; }); });
   if (!inRange || enclosedVolume(quads) >= 0.0)
   {
-    return Fitter(points, quads, options, monitor).run();
+    return fitBody(points, quads, options, monitor);
   }
   // Isosurfaces may be oriented inward: turn the quads over, u and v change places.
   QuadMesh outward = quads;
@@ -336,6 +358,6 @@ Result<G1FitResult> fitG1(const PartitionedPoints& points, const QuadMesh& quads
   {
     std::swap(uv[0], uv[1]);
   }
-  return Fitter(turned, outward, options, monitor).run();
+  return fitBody(turned, outward, options, monitor);
 }
 } // namespace bsr

@@ -83,7 +83,8 @@ struct G1FitResult
 /**
  * Fits a network of bicubic patches, one a quad, to partitioned points: the whole of paper 000,
  * section 4, for the outer and, where points of it are given, the inner shell of a hollow body,
- * joined at open ends by ruled walls.
+ * joined at open ends by ruled walls. A body of one shell only keeps its ends closed (there is
+ * nothing to join), and the message says so.
  */
 Result<G1FitResult> fitG1(const PartitionedPoints& points, const QuadMesh& quads,
   const G1FitOptions& options, Monitor& monitor);

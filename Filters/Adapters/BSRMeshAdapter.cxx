@@ -81,8 +81,8 @@ void facesTo(
     p->SetPoint(static_cast<vtkIdType>(i), points[i].data());
   }
   vtkNew<vtkCellArray> polys;
-  polys->AllocateExact(
-    static_cast<vtkIdType>(faces.size()), static_cast<vtkIdType>(faces.size() * N));
+  const auto count = static_cast<vtkIdType>(faces.size());
+  polys->AllocateExact(count, count * static_cast<vtkIdType>(N));
   for (const auto& f : faces)
   {
     vtkIdType ids[N];

@@ -52,11 +52,14 @@ def the_same_on_one_thread(expected):
     check(bits(fetch(again)) == expected, "one thread gives the same bits")
 
 
-def only_outer_and_kept_closed(phantom):
-    model = fetch(reconstruct(phantom, Sides="Outer Only", OpenEnds="Keep Closed"))
-    m = ExactModel(model)
-    check_equal(set(m.shells), {0}, "shells")
-    check((m.neighbors >= 0).all(), "closed")
+def one_side_alone(phantom):
+    heights = {}
+    for sides in ("Outer Only", "Inner Only"):
+        m = ExactModel(fetch(reconstruct(phantom, Sides=sides)))
+        check_equal(set(m.shells), {0}, "shells, " + sides)
+        check((m.neighbors >= 0).all(), "closed, " + sides)
+        heights[sides] = numpy.ptp(m.points[:, 2])
+    check(heights["Inner Only"] < heights["Outer Only"], "the inner wall lies inside")
 
 
 def bad_input():
@@ -89,7 +92,7 @@ if __name__ == "__main__":
     fiber_phantom = FiberPhantom(Seed=2)
     fiber_phantom.UpdatePipeline()
     expected_bits = ports_and_arrays(fiber_phantom)
-    only_outer_and_kept_closed(fiber_phantom)
+    one_side_alone(fiber_phantom)
     bad_input()
     cancelled(fiber_phantom)
     the_same_on_one_thread(expected_bits)
