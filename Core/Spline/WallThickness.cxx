@@ -30,8 +30,9 @@ std::vector<PatchPoint> sampleShell(const PatchNet& net, const NetPoints& shell)
       for (std::int64_t i = begin * Own; i < end * Own; ++i)
       {
         const std::int64_t k = i % Own;
+        const std::int64_t row = k / Samples;
         samples[i] =
-          surface.at(static_cast<Index>(i / Own), parameter(k % Samples), parameter(k / Samples));
+          surface.at(static_cast<Index>(i / Own), parameter(k % Samples), parameter(row));
       }
     });
   return samples;
