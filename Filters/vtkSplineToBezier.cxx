@@ -140,8 +140,8 @@ bool fill(const bsr::SplineModel& model, bsr::Monitor& monitor, vtkUnstructuredG
   const bsr::StitchedGrids grids = bsr::stitchGrids(model, sizes, false);
   addPoints(pieces, grids, out);
   Builder builder;
-  out->AllocateExact(
-    static_cast<vtkIdType>(pieces.size()), static_cast<vtkIdType>(16 * pieces.size()));
+  const auto count = static_cast<vtkIdType>(pieces.size());
+  out->AllocateExact(count, 16 * count);
   for (std::size_t p = 0; p < pieces.size(); ++p)
   {
     builder.addPatch(
