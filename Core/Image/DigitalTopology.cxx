@@ -1,5 +1,7 @@
 #include "Image/DigitalTopology.h"
 
+#include "Common/UnionFind.h"
+
 #include "Image/MonitoredLoop.h"
 
 #include <algorithm>
@@ -41,34 +43,6 @@ std::vector<LabeledRun> runsOf(
   }
   return runs;
 }
-
-class UnionFind
-{
-public:
-  explicit UnionFind(std::size_t n) : Parent(n)
-  {
-    std::iota(this->Parent.begin(), this->Parent.end(), std::int64_t{0});
-  }
-  std::int64_t find(std::int64_t i)
-  {
-    while (this->Parent[i] != i)
-    {
-      this->Parent[i] = this->Parent[this->Parent[i]];
-      i = this->Parent[i];
-    }
-    return i;
-  }
-  /// The smaller root stays, so that roots are first runs.
-  void join(std::int64_t a, std::int64_t b)
-  {
-    a = this->find(a);
-    b = this->find(b);
-    this->Parent[std::max(a, b)] = std::min(a, b);
-  }
-
-private:
-  std::vector<std::int64_t> Parent;
-};
 
 /// Joins the runs of two rows that touch; `slack` is 1 where diagonal neighbors count.
 void joinRows(const std::vector<LabeledRun>& runs, const std::vector<std::int64_t>& first,

@@ -1,5 +1,7 @@
 #include "Spline/Topology.h"
 
+#include "Common/UnionFind.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -77,34 +79,6 @@ double extent(const SideCurve& c)
   }
   return size;
 }
-
-/// Joins sets of grid points; the smallest index represents a set.
-class UnionFind
-{
-public:
-  explicit UnionFind(std::int64_t n) : Parent(static_cast<std::size_t>(n))
-  {
-    std::iota(this->Parent.begin(), this->Parent.end(), std::int64_t{0});
-  }
-  std::int64_t find(std::int64_t a)
-  {
-    while (this->Parent[a] != a)
-    {
-      this->Parent[a] = this->Parent[this->Parent[a]];
-      a = this->Parent[a];
-    }
-    return a;
-  }
-  void join(std::int64_t a, std::int64_t b)
-  {
-    a = this->find(a);
-    b = this->find(b);
-    this->Parent[std::max(a, b)] = std::min(a, b);
-  }
-
-private:
-  std::vector<std::int64_t> Parent;
-};
 
 std::int64_t sideLength(const GridSize& g, int side)
 {
