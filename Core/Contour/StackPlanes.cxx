@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 
@@ -189,21 +190,45 @@ void chooseAxes(ContourStack& stack, const std::vector<Fit>& fits)
   }
 }
 
-/// Typical distance of planes from the sorted positions of all contours: the median of the gaps
-/// that are no mere scatter within a plane.
-double typicalGap(std::vector<double> positions)
+/// Typical distance of slices: the median over the contours of the distance, across its plane, to
+/// the nearest contour of another plane that lies over or under it; of any other plane where there
+/// is none.
+double typicalGap(const std::vector<Fit>& fits, const Vec3& axis)
 {
-  std::sort(positions.begin(), positions.end());
-  std::vector<double> gaps;
-  for (std::size_t i = 1; i < positions.size(); ++i)
+  const auto distances = [&](bool facing)
   {
-    gaps.push_back(positions[i] - positions[i - 1]);
-  }
-  const double largest = gaps.empty() ? 0.0 : *std::max_element(gaps.begin(), gaps.end());
-  gaps.erase(std::remove_if(
-               gaps.begin(), gaps.end(), [&](double g) { return g < 0.02 * largest || g <= 0.0; }),
-    gaps.end());
-  return median(gaps);
+    std::vector<std::vector<double>> all(fits.size());
+    double largest = 0.0;
+    for (std::size_t i = 0; i < fits.size(); ++i)
+    {
+      for (std::size_t j = 0; j < fits.size(); ++j)
+      {
+        const Vec3 d = fits[j].Center - fits[i].Center;
+        const double across = (d - axis.dot(d) * axis).norm();
+        if (j != i && (!facing || across <= 1.5 * std::max(fits[i].Extent, fits[j].Extent)))
+        {
+          all[i].push_back(std::abs(fits[i].Normal.dot(d)));
+          largest = std::max(largest, all[i].back());
+        }
+      }
+    }
+    std::vector<double> nearest;
+    for (const auto& list : all)
+    {
+      double best = std::numeric_limits<double>::infinity();
+      for (const double d : list)
+      {
+        best = d > 1e-3 * largest ? std::min(best, d) : best;
+      }
+      if (std::isfinite(best))
+      {
+        nearest.push_back(best);
+      }
+    }
+    return median(nearest);
+  };
+  const double gap = distances(true);
+  return gap > 0.0 ? gap : distances(false);
 }
 
 /// Group number of each contour.
@@ -224,13 +249,9 @@ std::vector<std::int64_t> groupPlanes(const ContourStack& stack, const std::vect
     for (std::int64_t j = 0; j < i; ++j)
     {
       const Vec3 d = fits[j].Center - fits[i].Center;
-      if (parallel)
+      if (parallel && std::abs(stack.Axis.dot(d)) <= tolerance)
       {
-        if (std::abs(stack.Axis.dot(d)) <= tolerance)
-        {
-          sets.join(i, j);
-        }
-        continue;
+        sets.join(i, j);
       }
       const auto large = fits[i].Weight >= fits[j].Weight ? i : j;
       const auto small = large == i ? j : i;
@@ -268,7 +289,9 @@ void makeSlices(ContourStack& stack, const std::vector<Fit>& fits,
   }
   for (auto& [id, s] : slices)
   {
-    s.Position = stack.Axis.dot(s.Origin);
+    // where the plane meets the axis of the stack
+    s.Position = stack.Axis.dot(stack.Origin) +
+                 s.Normal.dot(s.Origin - stack.Origin) / s.Normal.dot(stack.Axis);
     stack.Slices.push_back(std::move(s));
   }
   std::stable_sort(stack.Slices.begin(), stack.Slices.end(),
@@ -361,12 +384,19 @@ Result<ContourStack> sliceContours(
     return Status::cancelled();
   }
   chooseAxes(stack, fits);
-  std::vector<double> positions;
-  for (const Fit& f : fits)
+  for (Fit& f : fits)
   {
-    positions.push_back(stack.Axis.dot(f.Center));
+    const double along = f.Normal.dot(stack.Axis);
+    if (std::sqrt(f.Weight) < 1e-3 * f.Extent || along * along < 0.25)
+    {
+      f.Normal = stack.Axis; // a straight line or a speck has no plane of its own
+    }
+    else if (along < 0.0)
+    {
+      f.Normal = -f.Normal;
+    }
   }
-  const double gap = typicalGap(positions);
+  const double gap = typicalGap(fits, stack.Axis);
   if (!(gap > 0.0) || (stack.Contours.size() < 2))
   {
     return Status::invalidInput("All contours lie in one plane; give at least two slices.");
@@ -387,12 +417,6 @@ Result<ContourStack> sliceContours(
         std::to_string(off) + " where slices are " + std::to_string(gap) +
         " apart; cut the surface with planes (Slice), or leave this polyline out.");
     }
-    if (std::sqrt(fits[i].Weight) < 1e-3 * fits[i].Extent ||
-        fits[i].Normal.dot(stack.Axis) * fits[i].Normal.dot(stack.Axis) < 0.25)
-    {
-      fits[i].Normal = stack.Axis; // a straight line or a speck has no plane of its own
-    }
-    fits[i].Normal *= fits[i].Normal.dot(stack.Axis) < 0.0 ? -1.0 : 1.0;
   }
   const double tolerance = options.PlaneTolerance > 0.0 ? options.PlaneTolerance : 0.05 * gap;
   makeSlices(stack, fits, groupPlanes(stack, fits, options, tolerance, parallel), parallel);

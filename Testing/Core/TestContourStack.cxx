@@ -1,5 +1,6 @@
 #include "Contour/ContourStack.h"
 #include "Contour/SampleContour.h"
+#include "ContourStacks.h"
 
 #include <gtest/gtest.h>
 
@@ -184,4 +185,31 @@ TEST(ContourStack, AlignedStartUndoesARotation)
   const bsr::ArcCurve b(turned, true);
   const double start = bsr::alignedStart(a, 0.0, b);
   EXPECT_LT((b.at(start) - Vec3(9, 0, 1) - a.at(0.0)).norm(), 0.02);
+}
+
+TEST(ContourStack, TwoHundredRandomStacksAreUnderstood)
+{
+  using bsrtest::StackKind;
+  int plain = 0;
+  for (int seed = 0; seed < 200; ++seed)
+  {
+    const bsrtest::RandomStack random = bsrtest::randomStack(seed);
+    const auto stack = build(random.Lines);
+    EXPECT_TRUE(stack.isOk()) << random.Name << ": " << stack.status().message();
+    if (!stack)
+    {
+      continue;
+    }
+    // three legs may enclose a gap where they meet: a hole of its own, or a speck
+    const bool gap = random.Kind == StackKind::OneToThree;
+    EXPECT_LE(stack->Dropped.size(), gap ? 1u : 0u) << random.Name;
+    const bsr::Index loops = static_cast<bsr::Index>(stack->Links.size()) + stack->Components -
+                             static_cast<bsr::Index>(stack->Contours.size());
+    EXPECT_EQ(loops, random.Kind == StackKind::OneTwoOne ? 1 : 0) << random.Name;
+    const bsr::Index components = random.Kind == StackKind::Nested ? 2 : 1;
+    EXPECT_GE(stack->Components, components) << random.Name;
+    EXPECT_LE(stack->Components, components + (gap ? 1 : 0)) << random.Name;
+    plain += random.Kind == StackKind::Tube ? stack->Branches : 0;
+  }
+  EXPECT_EQ(plain, 23);
 }
