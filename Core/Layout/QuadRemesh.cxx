@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace bsr
 {
@@ -29,9 +30,42 @@ Status checkOptions(const QuadRemeshOptions& o)
   return Status::ok();
 }
 
+Status checkSizeField(const TriangleMesh& mesh, const QuadRemeshOptions& o)
+{
+  if (o.Sizing != QuadSizing::Array)
+  {
+    return Status::ok();
+  }
+  const bool sound = std::all_of(o.SizeField.begin(), o.SizeField.end(),
+    [](double value) { return std::isfinite(value) && value > 0.0; });
+  if (o.SizeField.size() != mesh.Points.size() || !sound)
+  {
+    return Status::invalidParameter(
+      "Sizing by an array needs a value above 0 at each point of the surface; choose another array "
+      "or Uniform sizing.");
+  }
+  return Status::ok();
+}
+
+/// The value at the nearest point of the mesh.
+Sizing::Field sizeField(const TriangleMesh& mesh, const QuadRemeshOptions& o)
+{
+  if (o.Sizing != QuadSizing::Array)
+  {
+    return {};
+  }
+  std::vector<std::array<Index, 3>> points(mesh.Points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    points[i].fill(static_cast<Index>(i));
+  }
+  const auto tree = std::make_shared<TriangleTree>(mesh.Points, std::move(points));
+  return [tree, &o](const Vec3& p) { return o.SizeField[tree->nearest(p).Triangle]; };
+}
+
 /// Bending of the surface, measured on triangles of a fifth of a quad.
-Result<Sizing> sizingOf(
-  TriangleSurface s, const ReferenceSurface& reference, int quads, Monitor& monitor)
+Result<Sizing> sizingOf(TriangleSurface s, const ReferenceSurface& reference, int quads,
+  QuadSizing kind, const Sizing::Field& field, Monitor& monitor)
 {
   const double cell = std::sqrt(s.area() / quads);
   Monitor quiet;
@@ -45,7 +79,7 @@ Result<Sizing> sizingOf(
   {
     return status;
   }
-  return Sizing(s, cell);
+  return Sizing(s, cell, kind, field);
 }
 
 /// The layout of one component, by the fallback: pairs of triangles give four quads each, so half
@@ -150,6 +184,11 @@ Result<QuadLayout> quadRemesh(
   {
     return s;
   }
+  if (Status s = checkSizeField(mesh, options); !s)
+  {
+    return s;
+  }
+  const Sizing::Field field = sizeField(mesh, options);
   QuadLayout layout;
   auto surfaces = buildSurfaces(mesh, options.FeatureAngle, layout.Repairs, monitor);
   if (!surfaces)
@@ -180,7 +219,7 @@ Result<QuadLayout> quadRemesh(
     }
     const ReferenceSurface reference(s);
     SubMonitor laying(part, 0.5, 0.95);
-    auto sizing = sizingOf(s, reference, quads, monitor);
+    auto sizing = sizingOf(s, reference, quads, options.Sizing, field, monitor);
     if (!sizing)
     {
       return sizing.status();

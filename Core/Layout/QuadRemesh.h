@@ -3,6 +3,7 @@
 #include "Common/Monitor.h"
 #include "Common/Status.h"
 #include "Layout/LayoutDraft.h"
+#include "Layout/Sizing.h"
 #include "Mesh/BuildSurface.h"
 
 namespace bsr
@@ -12,6 +13,8 @@ struct QuadRemeshOptions
   int NumberOfQuads = 500;     ///< of all components together
   double FeatureAngle = 180.0; ///< degrees; sharper edges become quad edges, 180: none
   int Seed = 0;                ///< varies what is arbitrary; the same seed gives the same layout
+  QuadSizing Sizing = QuadSizing::Uniform;
+  std::vector<double> SizeField; ///< QuadSizing::Array: relative side per point of the mesh, > 0
 };
 
 /// Which road gave the layout of a component.

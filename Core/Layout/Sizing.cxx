@@ -45,7 +45,7 @@ std::vector<double> bending(const TriangleSurface& s, const std::vector<std::uin
 }
 } // namespace
 
-Sizing::Sizing(const TriangleSurface& s, double cell)
+Sizing::Sizing(const TriangleSurface& s, double cell, QuadSizing kind, const Sizing::Field& field)
 {
   std::vector<std::uint8_t> inside(s.Region.size());
   for (Index f = 0; f < s.faces(); ++f)
@@ -88,21 +88,58 @@ Sizing::Sizing(const TriangleSurface& s, double cell)
     }
   }
   this->Tree = TriangleTree(s.Points, std::move(triangles));
+  this->Cell = cell;
+  this->Factor.assign(this->Area.size(), 1.0);
+  if (kind != QuadSizing::Uniform)
+  {
+    this->setFactors(s, bent, kind, field);
+  }
 }
 
-double Sizing::bounded(double limit, double cell)
+/// Relative sides, bounded and with a geometric mean of about 1.
+void Sizing::setFactors(const TriangleSurface& s, const std::vector<double>& bent, QuadSizing kind,
+  const Sizing::Field& field)
 {
-  return std::clamp(limit, Smallest * cell, cell);
+  double logs = 0.0;
+  double total = 0.0;
+  std::size_t i = 0;
+  for (Index f = 0; f < s.faces(); ++f)
+  {
+    if (s.hole(f))
+    {
+      continue;
+    }
+    const auto c = s.corners(f);
+    double value = 1.0;
+    if (kind == QuadSizing::Array && field)
+    {
+      value = field((s.Points[c[0]] + s.Points[c[1]] + s.Points[c[2]]) / 3.0);
+    }
+    else if (kind == QuadSizing::Curvature)
+    {
+      value = 1.0 / std::sqrt(std::max(bent[f], 1e-3 / this->Cell));
+    }
+    this->Factor[i] = value;
+    logs += this->Area[i] * std::log(value);
+    total += this->Area[i++];
+  }
+  const double mean = std::exp(logs / std::max(total, 1e-300));
+  const bool bounded = kind == QuadSizing::Curvature;
+  for (double& value : this->Factor)
+  {
+    value = bounded ? std::clamp(value / mean, 0.4, 2.0) : std::clamp(value / mean, 0.05, 20.0);
+  }
 }
 
-double Sizing::limit(const Vec3& p) const
+double Sizing::sideIn(Index triangle, double cell) const
 {
-  return this->Limit[this->Tree.nearest(p).Triangle];
+  const double side = this->Factor[triangle] * cell;
+  return std::clamp(this->Limit[triangle], Smallest * side, side);
 }
 
 double Sizing::side(const Vec3& p, double cell) const
 {
-  return bounded(this->limit(p), cell);
+  return this->sideIn(this->Tree.nearest(p).Triangle, cell);
 }
 
 double Sizing::cellFor(double quads) const
@@ -118,7 +155,7 @@ double Sizing::cellFor(double quads) const
     double got = 0.0;
     for (std::size_t f = 0; f < this->Area.size(); ++f)
     {
-      const double side = bounded(this->Limit[f], cell);
+      const double side = this->sideIn(static_cast<Index>(f), cell);
       got += this->Area[f] / (side * side);
     }
     cell *= std::pow(got / quads, 0.4);

@@ -3,32 +3,48 @@
 #include "Mesh/TriangleSurface.h"
 #include "Mesh/TriangleTree.h"
 
+#include <functional>
+
 namespace bsr
 {
+/// What decides how large quads are where.
+enum class QuadSizing
+{
+  Uniform = 0,   ///< alike everywhere
+  Curvature = 1, ///< side by the root of the radius of curvature, 0.4 to 2 times the mean
+  Array = 2      ///< side in proportion to a value given at each point
+};
+
 /**
- * How large quads may be where: everywhere alike, but smaller where the surface is bent over the
- * length of a quad, so that thin parts keep about five quads around and do not shrink.
+ * How large quads may be where. Whatever the kind, they are smaller where the surface is bent over
+ * the length of a quad, so that thin parts keep about five quads around and do not shrink.
  * Bending is averaged over about a quad, so that single sharp edges do not count.
  */
 class Sizing
 {
 public:
+  using Field = std::function<double(const Vec3&)>;
+
   Sizing() = default;
   /// \param s a surface of triangles of even size, about a fifth of `cell`.
-  Sizing(const TriangleSurface& s, double cell);
+  /// \param field relative side at a place, above 0; used for QuadSizing::Array only
+  Sizing(const TriangleSurface& s, double cell, QuadSizing kind = QuadSizing::Uniform,
+    const Field& field = {});
 
-  /// Largest side of a quad at p.
-  double limit(const Vec3& p) const;
   /// Side of quads at p where quads in flat places have side `cell`.
   double side(const Vec3& p, double cell) const;
   /// The side in flat places that gives about so many quads.
   double cellFor(double quads) const;
 
 private:
-  static double bounded(double limit, double cell);
+  double sideIn(Index triangle, double cell) const;
+  void setFactors(
+    const TriangleSurface& s, const std::vector<double>& bent, QuadSizing kind, const Field& field);
 
   TriangleTree Tree;
-  std::vector<double> Limit; ///< per triangle
-  std::vector<double> Area;  ///< per triangle
+  double Cell = 1.0;
+  std::vector<double> Limit;  ///< largest side, per triangle
+  std::vector<double> Factor; ///< side relative to flat places, per triangle
+  std::vector<double> Area;   ///< per triangle
 };
 } // namespace bsr

@@ -174,6 +174,53 @@ TEST(QuadRemesh, MendsOrientationAndDuplicates)
   EXPECT_EQ(layout.Repairs.DegenerateFaces, 1);
 }
 
+TEST(QuadRemesh, SizesFollowAnArray)
+{
+  const TriangleMesh mesh = ring(160, 60, true);
+  QuadRemeshOptions options;
+  options.NumberOfQuads = 600;
+  options.Sizing = QuadSizing::Array;
+  for (const Vec3& p : mesh.Points)
+  {
+    options.SizeField.push_back(p.x() > 0.0 ? 1.0 : 2.0);
+  }
+  Monitor monitor;
+  auto layout = quadRemesh(mesh, options, monitor);
+  ASSERT_TRUE(layout) << layout.status().message();
+  expectSound(*layout, 0, 0);
+  int small = 0;
+  for (const auto& q : layout->Mesh.Quads)
+  {
+    small += layout->Mesh.Points[q[0]].x() + layout->Mesh.Points[q[2]].x() > 0.0;
+  }
+  const auto all = static_cast<int>(layout->Mesh.Quads.size());
+  EXPECT_NEAR(all, 600, 90);
+  // A field without singular vertices can only shorten quads along the torus.
+  EXPECT_GT(small, 1.5 * (all - small));
+}
+
+TEST(QuadRemesh, CurvatureSizingKeepsTheCount)
+{
+  QuadRemeshOptions options;
+  options.NumberOfQuads = 400;
+  options.Sizing = QuadSizing::Curvature;
+  Monitor monitor;
+  auto layout = quadRemesh(ring(160, 60, true), options, monitor);
+  ASSERT_TRUE(layout) << layout.status().message();
+  expectSound(*layout, 0, 0);
+  EXPECT_NEAR(layout->Mesh.Quads.size(), 400, 60);
+}
+
+TEST(QuadRemesh, SizeFieldMustFitTheMesh)
+{
+  QuadRemeshOptions options;
+  options.Sizing = QuadSizing::Array;
+  EXPECT_EQ(failure(ring(20, 10, true), options).code(), StatusCode::InvalidParameter);
+  options.SizeField.assign(200, 1.0);
+  options.SizeField[5] = 0.0;
+  EXPECT_EQ(failure(ring(20, 10, true), options).code(), StatusCode::InvalidParameter);
+}
+
 TEST(QuadRemesh, IsDeterministic)
 {
   const QuadLayout a = remeshed(ring(100, 40, true), 300);
