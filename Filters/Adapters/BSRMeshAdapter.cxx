@@ -10,6 +10,7 @@
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace bsr
@@ -166,8 +167,11 @@ void addField(vtkFieldData* field, const char* name, const std::vector<double>& 
 {
   vtkNew<vtkDoubleArray> a;
   a->SetName(name);
-  a->SetNumberOfComponents(static_cast<int>(values.size()));
-  a->InsertNextTuple(values.data());
+  a->SetNumberOfComponents(std::max(1, static_cast<int>(values.size())));
+  if (!values.empty())
+  {
+    a->InsertNextTuple(values.data());
+  }
   field->AddArray(a);
 }
 } // namespace bsr

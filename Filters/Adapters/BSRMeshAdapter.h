@@ -28,7 +28,7 @@ Result<QuadMesh> quadMeshFrom(vtkPolyData* layout, const std::string& regionArra
 void quadMeshTo(const QuadMesh& mesh, vtkPolyData* out);
 void triangleMeshTo(const TriangleMesh& mesh, vtkPolyData* out);
 
-/// Adds a field array of one tuple under `name`.
+/// Adds a field array of one tuple under `name` (of none without values).
 void addField(vtkFieldData* field, const char* name, double value);
 void addField(vtkFieldData* field, const char* name, const std::vector<double>& values);
 } // namespace bsr
