@@ -190,7 +190,9 @@ Result<QuadLayout> quadRemesh(
   }
   const Sizing::Field field = sizeField(mesh, options);
   QuadLayout layout;
-  auto surfaces = buildSurfaces(mesh, options.FeatureAngle, layout.Repairs, monitor);
+  BuildSurfaceOptions building;
+  building.FeatureAngle = options.FeatureAngle;
+  auto surfaces = buildSurfaces(mesh, building, layout.Repairs, monitor);
   if (!surfaces)
   {
     return surfaces.status();
@@ -199,10 +201,6 @@ Result<QuadLayout> quadRemesh(
   for (const TriangleSurface& s : *surfaces)
   {
     total += s.area();
-  }
-  if (!(total > 0.0))
-  {
-    return Status::invalidInput("The surface has no area.");
   }
   double done = 0.0;
   for (TriangleSurface& s : *surfaces)
@@ -213,7 +211,11 @@ Result<QuadLayout> quadRemesh(
     const int quads = std::max(24, static_cast<int>(std::lround(share * options.NumberOfQuads)));
     const int euler = s.eulerCharacteristic();
     SubMonitor decimating(part, 0.0, 0.5);
-    if (Status status = decimate(s, std::max(20000, 60 * quads), decimating); !status)
+    DecimateOptions decimation;
+    decimation.Target = std::max(20000, 60 * quads);
+    decimation.Most = 3 * decimation.Target;
+    decimation.MaximumError = 0.02 * std::sqrt(s.area() / quads);
+    if (Status status = decimate(s, decimation, decimating); !status)
     {
       return status;
     }
