@@ -12,6 +12,12 @@
  *
  * Unlike the decimation filters of VTK, which give triangles, the output is made of quads only.
  *
+ * Method MORSE_SMALE takes the Morse-Smale complex of an eigenfunction of the Laplace-Beltrami
+ * operator instead: maxima, minima and saddles are joined by paths up and down, each cell between
+ * them is a quad. The eigenfunction is chosen by NumberOfQuads, or by its place in the spectrum;
+ * noise is cancelled by persistence, degenerate cells are mended. Boundaries are kept; regions and
+ * sharp edges are not followed.
+ *
  * Region borders of the cell array RegionArray become closed rows of quad edges that follow the
  * border; so do boundaries and edges sharper than FeatureAngle.
  *
@@ -22,12 +28,22 @@
  * - field arrays `Irregular` (interior vertices of a valence other than 4), `EulerCharacteristic`,
  *   `Hausdorff` (largest distance between surface and layout, both ways, in world units),
  *   `MeanDistance`, `MinScaledJacobian`, `MeanAngleDeviation` (degrees), `LayoutStage` (per
- *   component: 0 parametrized, 1 paired triangles), `Repairs` (merged points, degenerate,
- *   repeated and turned faces, split vertices), `Seconds`.
+ *   component: 0 parametrized, 1 paired triangles, 2 Morse-Smale), `Repairs` (merged points,
+ * degenerate, repeated and turned faces, split vertices), `Seconds`; method MORSE_SMALE, per
+ * component: `EigenfunctionTaken` (place in the spectrum), `Eigenvalue`, `Minima`, `Saddles`,
+ * `Maxima`, `MorseCells` (before mending), `CancelledPairs`, `CellSubdivisions` (1: every cell was
+ * cut in 2 x 2, as there was no valid layout without).
+ *
+ * Output port 1: the triangle surface the layout was found on (repaired and decimated;
+ * MORSE_SMALE: remeshed evenly and cut along the paths), and with MORSE_SMALE
+ * - cell array `Cell` (Int32): the cell of each triangle, from 0;
+ * - point array `Eigenfunction` (Float64): the function, largest absolute value 1;
+ * - point array `Critical` (UInt8): 0 regular, 1 minimum, 2 saddle, 3 maximum.
  *
  * Reference: H. Mosbach et al., paper 000, section 2; D. Bommes, H. Zimmer and L. Kobbelt,
  * Mixed-integer quadrangulation, ACM Trans. Graph. 28 (2009); J. Huang et al., QuadriFlow, Comput.
- * Graph. Forum 37 (2018).
+ * Graph. Forum 37 (2018); S. Dong et al., Spectral surface quadrangulation, SIGGRAPH 2006; J. W.
+ * Branch et al., paper 003, section 3.
  *
  * @warning Edges of three or more triangles and one-sided surfaces are errors.
  * @sa vtkPartitionToQuads vtkBSplineG1Fit
@@ -51,12 +67,13 @@ public:
 
   enum Methods
   {
-    FIELD_ALIGNED = 0
+    FIELD_ALIGNED = 0,
+    MORSE_SMALE = 1
   };
 
   ///@{
-  /// How the layout is found. Default: FIELD_ALIGNED, the only one so far.
-  vtkSetClampMacro(Method, int, FIELD_ALIGNED, FIELD_ALIGNED);
+  /// How the layout is found. Default: FIELD_ALIGNED.
+  vtkSetClampMacro(Method, int, FIELD_ALIGNED, MORSE_SMALE);
   vtkGetMacro(Method, int);
   ///@}
 
@@ -81,6 +98,20 @@ public:
   ///@}
 
   ///@{
+  /// MORSE_SMALE: the place of the eigenfunction in the spectrum, from 1; NumberOfQuads then has no
+  /// say. Default 0: the function that gives the best layout of about NumberOfQuads.
+  vtkSetMacro(Eigenfunction, int);
+  vtkGetMacro(Eigenfunction, int);
+  ///@}
+
+  ///@{
+  /// MORSE_SMALE: extrema that stand out less than this share of the function's range are noise and
+  /// are cancelled. Default 0.01, from 0 to below 1.
+  vtkSetMacro(Persistence, double);
+  vtkGetMacro(Persistence, double);
+  ///@}
+
+  ///@{
   /// Cell array of regions whose borders become rows of quad edges, used if the input has it.
   /// Default "EndRegion".
   vtkSetMacro(RegionArray, std::string);
@@ -88,7 +119,7 @@ public:
   ///@}
 
 protected:
-  vtkQuadRemesh() = default;
+  vtkQuadRemesh();
   ~vtkQuadRemesh() override = default;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
@@ -100,6 +131,8 @@ private:
   int NumberOfQuads = 500;
   double FeatureAngle = 180.0;
   int Seed = 0;
+  int Eigenfunction = 0;
+  double Persistence = 0.01;
   std::string RegionArray = "EndRegion";
 };
 

@@ -27,6 +27,15 @@ Status checkOptions(const QuadRemeshOptions& o)
   {
     return Status::invalidParameter("FeatureAngle must be above 0 degrees (180: no features).");
   }
+  if (o.Eigenfunction < 0)
+  {
+    return Status::invalidParameter("Eigenfunction must be 0 (automatic) or a place in the "
+                                    "spectrum from 1.");
+  }
+  if (!(o.Persistence >= 0.0 && o.Persistence < 1.0))
+  {
+    return Status::invalidParameter("Persistence must be a share of the range from 0 to below 1.");
+  }
   return Status::ok();
 }
 
@@ -165,6 +174,47 @@ Result<LayoutDraft> bestLayout(const TriangleSurface& s, const ReferenceSurface&
   return best;
 }
 
+void append(PartitionedSurface& all, const PartitionedSurface& part, Index firstCell)
+{
+  const auto base = static_cast<Index>(all.Mesh.Points.size());
+  all.Mesh.Points.insert(all.Mesh.Points.end(), part.Mesh.Points.begin(), part.Mesh.Points.end());
+  all.Eigenfunction.insert(
+    all.Eigenfunction.end(), part.Eigenfunction.begin(), part.Eigenfunction.end());
+  all.Critical.insert(all.Critical.end(), part.Critical.begin(), part.Critical.end());
+  for (const auto& t : part.Mesh.Triangles)
+  {
+    all.Mesh.Triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+  }
+  for (Index c : part.Cell)
+  {
+    all.Cell.push_back(c + firstCell);
+  }
+}
+
+/// The Morse-Smale layout of one component; adds what it leaves besides to `layout`.
+Result<LayoutDraft> morseDraft(const TriangleSurface& s, const ReferenceSurface& reference,
+  const Sizing& sizing, int quads, const QuadRemeshOptions& options, QuadLayout& layout,
+  Monitor& monitor)
+{
+  MorseOptions morse;
+  morse.NumberOfQuads = quads;
+  morse.Eigenfunction = options.Eigenfunction;
+  morse.Persistence = options.Persistence;
+  auto found = morseLayout(s, reference, sizing, morse, monitor);
+  if (!found)
+  {
+    return found.status();
+  }
+  Index cells = 0;
+  for (const MorseReport& r : layout.Morse)
+  {
+    cells += r.Cells;
+  }
+  append(layout.Surface, found->Surface, cells);
+  layout.Morse.push_back(found->Report);
+  return std::move(found->Draft);
+}
+
 void append(QuadMesh& all, const QuadMesh& part)
 {
   const auto base = static_cast<Index>(all.Points.size());
@@ -190,9 +240,10 @@ Result<QuadLayout> quadRemesh(
   }
   const Sizing::Field field = sizeField(mesh, options);
   QuadLayout layout;
-  BuildSurfaceOptions building;
-  building.FeatureAngle = options.FeatureAngle;
-  auto surfaces = buildSurfaces(mesh, building, layout.Repairs, monitor);
+  const bool morse = options.Method == LayoutMethod::MorseSmale;
+  auto surfaces =
+    morse ? buildSurfaces({mesh.Points, mesh.Triangles, {}}, 180.0, layout.Repairs, monitor)
+          : buildSurfaces(mesh, options.FeatureAngle, layout.Repairs, monitor);
   if (!surfaces)
   {
     return surfaces.status();
@@ -201,6 +252,10 @@ Result<QuadLayout> quadRemesh(
   for (const TriangleSurface& s : *surfaces)
   {
     total += s.area();
+  }
+  if (!(total > 0.0))
+  {
+    return Status::invalidInput("The surface has no area.");
   }
   double done = 0.0;
   for (TriangleSurface& s : *surfaces)
@@ -211,11 +266,7 @@ Result<QuadLayout> quadRemesh(
     const int quads = std::max(24, static_cast<int>(std::lround(share * options.NumberOfQuads)));
     const int euler = s.eulerCharacteristic();
     SubMonitor decimating(part, 0.0, 0.5);
-    DecimateOptions decimation;
-    decimation.Target = std::max(20000, 60 * quads);
-    decimation.Most = 3 * decimation.Target;
-    decimation.MaximumError = 0.02 * std::sqrt(s.area() / quads);
-    if (Status status = decimate(s, decimation, decimating); !status)
+    if (Status status = decimate(s, std::max(20000, 60 * quads), decimating); !status)
     {
       return status;
     }
@@ -226,8 +277,13 @@ Result<QuadLayout> quadRemesh(
     {
       return sizing.status();
     }
-    LayoutStage stage = LayoutStage::Parametrized;
-    auto draft = bestLayout(s, reference, *sizing, quads, options.Seed, stage, laying);
+    if (!morse)
+    {
+      append(layout.Surface, {s.toMesh(), {}, {}, {}}, 0);
+    }
+    LayoutStage stage = morse ? LayoutStage::MorseSmale : LayoutStage::Parametrized;
+    auto draft = morse ? morseDraft(s, reference, *sizing, quads, options, layout, laying)
+                       : bestLayout(s, reference, *sizing, quads, options.Seed, stage, laying);
     if (!draft)
     {
       return draft.status();

@@ -3,25 +3,37 @@
 #include "Common/Monitor.h"
 #include "Common/Status.h"
 #include "Layout/LayoutDraft.h"
+#include "Layout/MorseLayout.h"
 #include "Layout/Sizing.h"
 #include "Mesh/BuildSurface.h"
 
 namespace bsr
 {
+/// How a layout is found.
+enum class LayoutMethod
+{
+  FieldAligned = 0, ///< integer-grid map of a cross field, or paired triangles
+  MorseSmale = 1    ///< Morse-Smale complex of a Laplacian eigenfunction
+};
+
 struct QuadRemeshOptions
 {
+  LayoutMethod Method = LayoutMethod::FieldAligned;
   int NumberOfQuads = 500;     ///< of all components together
   double FeatureAngle = 180.0; ///< degrees; sharper edges become quad edges, 180: none
   int Seed = 0;                ///< varies what is arbitrary; the same seed gives the same layout
   QuadSizing Sizing = QuadSizing::Uniform;
   std::vector<double> SizeField; ///< QuadSizing::Array: relative side per point of the mesh, > 0
+  int Eigenfunction = 0;         ///< Morse-Smale: place in the spectrum, from 1; 0: automatic
+  double Persistence = 0.01;     ///< Morse-Smale: noise, as a share of the function's range
 };
 
 /// Which road gave the layout of a component.
 enum class LayoutStage
 {
   Parametrized = 0, ///< integer-grid map of a cross field
-  Paired = 1        ///< pairs of coarse triangles, split: the fallback
+  Paired = 1,       ///< pairs of coarse triangles, split: the fallback
+  MorseSmale = 2    ///< Morse-Smale complex of an eigenfunction
 };
 
 struct QuadLayout
@@ -31,6 +43,10 @@ struct QuadLayout
   LayoutDistance Distance;         ///< in world units, to the input
   std::vector<LayoutStage> Stages; ///< per component of the input
   RepairReport Repairs;
+  std::vector<MorseReport> Morse; ///< per component, method MorseSmale only
+  /// The surface the layout was found on. Method MorseSmale: cut along the paths of the complex;
+  /// FieldAligned: repaired and decimated, without cells and function.
+  PartitionedSurface Surface;
 };
 
 /**
@@ -39,7 +55,8 @@ struct QuadLayout
  * Each connected component gets quads in proportion to its area (as many as its topology needs at
  * least). The layout is always an oriented 2-manifold with the Euler characteristic and the
  * boundary loops of the (repaired) input, without doublets, or an error is returned. Region
- * borders and boundaries become rows of quad edges; regions are passed on.
+ * borders and boundaries become rows of quad edges; regions are passed on. The method MorseSmale
+ * follows boundaries, but neither regions nor sharp edges.
  */
 Result<QuadLayout> quadRemesh(
   const TriangleMesh& mesh, const QuadRemeshOptions& options, Monitor& monitor);

@@ -92,6 +92,38 @@ TEST(QuadRemeshFilter, AddsItsArrays)
   EXPECT_LT(fieldValue(out, "Hausdorff"), 0.1);
 }
 
+TEST(QuadRemeshFilter, MorseSmaleGivesCellsAndCriticalPoints)
+{
+  const auto surface = bsrtest::randomShape(2, 48);
+  const double euler = bsrtest::eulerOfClosed(surface);
+  vtkNew<vtkQuadRemesh> remesh;
+  remesh->SetInputData(surface);
+  remesh->SetMethod(vtkQuadRemesh::MORSE_SMALE);
+  remesh->SetNumberOfQuads(120);
+  ErrorLog log(remesh);
+  remesh->Update();
+  ASSERT_TRUE(log.empty()) << log.text();
+  vtkPolyData* out = remesh->GetOutput(0);
+  expectClosedQuads(out);
+  EXPECT_EQ(fieldValue(out, "EulerCharacteristic"), euler);
+  EXPECT_EQ(fieldValue(out, "LayoutStage"), 2);
+  EXPECT_EQ(
+    fieldValue(out, "Minima") - fieldValue(out, "Saddles") + fieldValue(out, "Maxima"), euler);
+  EXPECT_EQ(fieldValue(out, "MorseCells"), 2 * fieldValue(out, "Saddles"));
+  vtkPolyData* cut = remesh->GetOutput(1);
+  ASSERT_TRUE(cut->GetCellData()->GetArray("Cell"));
+  ASSERT_TRUE(cut->GetPointData()->GetArray("Critical"));
+  EXPECT_EQ(cut->GetCellData()->GetArray("Cell")->GetRange()[1] + 1, fieldValue(out, "MorseCells"));
+  EXPECT_EQ(cut->GetPointData()->GetArray("Critical")->GetRange()[1], 3);
+  EXPECT_LE(cut->GetPointData()->GetArray("Eigenfunction")->GetRange()[1], 1.0);
+  EXPECT_EQ(bsrtest::eulerOfClosed(cut), euler);
+  remesh->SetEigenfunction(-3);
+  remesh->Update();
+  EXPECT_TRUE(log.saidOnce("Eigenfunction")) << log.text();
+  EXPECT_EQ(remesh->GetOutput(0)->GetNumberOfCells(), 0);
+  EXPECT_EQ(remesh->GetOutput(1)->GetNumberOfCells(), 0);
+}
+
 TEST(QuadRemeshFilter, SaysWhatIsWrong)
 {
   vtkNew<vtkQuadRemesh> remesh;

@@ -1,0 +1,282 @@
+#include "Layout/MorseLayout.h"
+
+#include "Common/Parallel.h"
+#include "Layout/ParametrizedLayout.h"
+#include "Layout/RelaxLayout.h"
+#include "Mesh/LaplaceSpectrum.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bsr
+{
+namespace
+{
+/// What one eigenfunction gives.
+struct Candidate
+{
+  int Number = 0;
+  double Eigenvalue = 0.0;
+  std::size_t Cancelled = 0;
+  int Subdivisions = 0;
+  bool Evened = false;
+  MorseCells Cells;
+  LayoutDraft Draft; ///< no quads: not valid
+  double Cost = std::numeric_limits<double>::infinity();
+
+  int quads() const { return static_cast<int>(this->Draft.Mesh.Quads.size()); }
+};
+
+class Search
+{
+public:
+  Search(const TriangleSurface& fine, const TriangleSurface& s, const ReferenceSurface& reference,
+    const MorseOptions& options)
+      : Fine(fine), S(s), Reference(reference), Options(options), Euler(s.eulerCharacteristic())
+  {
+  }
+
+  /// Layouts of some functions, in parallel; those of too many cells also with more cancelled.
+  void try_(const std::vector<Eigenfunction>& functions, bool count)
+  {
+    std::vector<std::vector<Candidate>> found(functions.size());
+    parallelFor(0, static_cast<std::int64_t>(functions.size()), 1,
+      [&](std::int64_t first, std::int64_t last)
+      {
+        for (std::int64_t i = first; i < last; ++i)
+        {
+          found[i] = this->layouts(functions[i], count);
+        }
+      });
+    for (auto& list : found)
+    {
+      for (Candidate& c : list)
+      {
+        this->Found.push_back(std::move(c));
+      }
+    }
+  }
+
+  /// Relaxes the candidates nearest to the number asked for; the best one first.
+  Status finish(std::size_t most, Monitor& monitor)
+  {
+    const auto miss = [&](const Candidate& c)
+    {
+      return c.quads() == 0
+               ? 1e9
+               : std::abs(std::log(static_cast<double>(c.quads()) / this->Options.NumberOfQuads));
+    };
+    std::stable_sort(this->Found.begin(), this->Found.end(),
+      [&](const Candidate& a, const Candidate& b) { return miss(a) < miss(b); });
+    this->Found.resize(std::min(most, this->Found.size()));
+    const auto n = static_cast<std::int64_t>(this->Found.size());
+    parallelFor(0, n, 1,
+      [&](std::int64_t first, std::int64_t last)
+      {
+        for (std::int64_t i = first; i < last; ++i)
+        {
+          this->judge(this->Found[i]);
+        }
+      });
+    std::stable_sort(this->Found.begin(), this->Found.end(),
+      [](const Candidate& a, const Candidate& b) { return a.Cost < b.Cost; });
+    return monitor.cancelled() ? Status::cancelled() : Status::ok();
+  }
+
+  std::vector<Candidate> Found;
+
+private:
+  std::vector<Candidate> layouts(const Eigenfunction& function, bool count) const
+  {
+    const auto [low, high] = std::minmax_element(function.Values.begin(), function.Values.end());
+    const double noise = this->Options.Persistence * (*high - *low);
+    std::vector<double> values = function.Values;
+    smoothBoundaries(this->Fine, noise, values);
+    const MorseGradient gradient = morseGradient(this->Fine, std::move(values));
+    const auto pairs = persistencePairs(this->Fine, gradient);
+    const auto end = std::find_if(
+      pairs.begin(), pairs.end(), [&](const PersistencePair& p) { return p.Persistence > noise; });
+    const auto cancelled = static_cast<std::size_t>(end - pairs.begin());
+    std::vector<Candidate> found;
+    const auto add = [&](std::size_t n)
+    {
+      Candidate c;
+      c.Number = function.Number;
+      c.Eigenvalue = function.Eigenvalue;
+      c.Cancelled = n;
+      MorseGradient g = gradient;
+      cancelPairs(this->Fine, pairs, n, g);
+      c.Cells = morseCells(this->Fine, g);
+      if (c.Cells.Problem.empty())
+      {
+        this->mend(c);
+      }
+      found.push_back(std::move(c));
+      return found.back().quads();
+    };
+    const int quads = add(cancelled);
+    const int surplus = (quads - this->Options.NumberOfQuads) / 2;
+    if (count && surplus > 0 && quads < 1.3 * this->Options.NumberOfQuads)
+    {
+      add(std::min(cancelled + surplus, pairs.size()));
+    }
+    return found;
+  }
+
+  /// From cells to a valid layout, if they give one.
+  void mend(Candidate& c) const
+  {
+    QuadGraph graph = c.Cells.Graph;
+    std::vector<Vec3> points = c.Cells.Points;
+    std::vector<VertexKind> kind = c.Cells.Kind;
+    if (!mendGraph(graph, points, kind))
+    {
+      subdivideGraph(graph, points, kind);
+      c.Subdivisions = 1;
+    }
+    LayoutDraft draft = draftOf(graph, points, kind);
+    const LayoutReport report = checkLayout(draft.Mesh);
+    if (report.Valid && report.Euler == this->Euler)
+    {
+      c.Draft = std::move(draft);
+    }
+  }
+
+  void judge(Candidate& c) const
+  {
+    if (c.quads() == 0)
+    {
+      return;
+    }
+    Monitor quiet;
+    const Status status = relaxLayout(c.Draft, this->Reference, 40, quiet);
+    if (status)
+    {
+      c.Cost = layoutCost(
+        c.Draft, checkLayout(c.Draft.Mesh), this->S, this->Reference, this->Options.NumberOfQuads);
+    }
+  }
+
+  const TriangleSurface& Fine;
+  const TriangleSurface& S;
+  const ReferenceSurface& Reference;
+  const MorseOptions& Options;
+  int Euler;
+};
+
+/// Goes through the spectrum until the complexes have as many cells as asked for.
+Status searchSpectrum(
+  LaplaceSpectrum& spectrum, const MorseOptions& options, Search& search, Monitor& monitor)
+{
+  constexpr int batch = 8;
+  double number = std::max(2.0, options.NumberOfQuads / 1.5);
+  for (int round = 0; round < 4; ++round)
+  {
+    if (monitor.cancelled())
+    {
+      return Status::cancelled();
+    }
+    monitor.progress(round / 5.0);
+    const auto functions = spectrum.near(spectrum.weyl(number), batch);
+    if (!functions)
+    {
+      return functions.status();
+    }
+    const std::size_t before = search.Found.size();
+    search.try_(*functions, true);
+    std::vector<double> ratio;
+    for (std::size_t i = before; i < search.Found.size(); ++i)
+    {
+      const Candidate& c = search.Found[i];
+      if (c.Cells.Cells > 0)
+      {
+        ratio.push_back(static_cast<double>(c.Cells.Cells) / options.NumberOfQuads);
+      }
+    }
+    if (ratio.empty())
+    {
+      number *= 1.3;
+      continue;
+    }
+    std::nth_element(ratio.begin(), ratio.begin() + ratio.size() / 2, ratio.end());
+    const double median = ratio[ratio.size() / 2];
+    number /= std::clamp(median, 0.5, 2.0);
+    number = std::clamp(number, 2.0, 0.2 * spectrum.size());
+  }
+  return Status::ok();
+}
+
+Result<TriangleSurface> evenSurface(const TriangleSurface& s, const ReferenceSurface& reference,
+  const Sizing& sizing, const MorseOptions& options, Monitor& monitor)
+{
+  const double triangles = std::max(12000.0, options.TrianglesPerCell * options.NumberOfQuads);
+  const double share = triangles / options.NumberOfQuads;
+  const double cell = sizing.cellFor(options.NumberOfQuads);
+  const double edge = std::sqrt(4.0 / std::sqrt(3.0) / share);
+  TriangleSurface fine = s;
+  const auto length = [&](const Vec3& p) { return edge * sizing.side(p, cell); };
+  if (Status status = remesh(fine, reference, length, 5, monitor); !status)
+  {
+    return status;
+  }
+  return fine;
+}
+} // namespace
+
+Result<MorseLayout> morseLayout(const TriangleSurface& s, const ReferenceSurface& reference,
+  const Sizing& sizing, const MorseOptions& options, Monitor& monitor)
+{
+  SubMonitor remeshing(monitor, 0.0, 0.3);
+  auto fine = evenSurface(s, reference, sizing, options, remeshing);
+  if (!fine)
+  {
+    return fine.status();
+  }
+  const double cell = sizing.cellFor(options.NumberOfQuads);
+  std::vector<double> density(fine->Points.size(), 1.0);
+  for (std::size_t v = 0; v < density.size(); ++v)
+  {
+    const double side = sizing.side(fine->Points[v], cell);
+    density[v] = 1.0 / (side * side);
+  }
+  LaplaceSpectrum spectrum(cotangentLaplacian(*fine), density);
+  Search search(*fine, s, reference, options);
+  SubMonitor searching(monitor, 0.3, 0.8);
+  if (options.Eigenfunction > 0)
+  {
+    const auto function = spectrum.at(options.Eigenfunction, searching);
+    if (!function)
+    {
+      return function.status();
+    }
+    search.try_({*function}, false);
+  }
+  else if (Status status = searchSpectrum(spectrum, options, search, searching); !status)
+  {
+    return status;
+  }
+  if (Status status = search.finish(12, monitor); !status)
+  {
+    return status;
+  }
+  if (search.Found.empty() || search.Found[0].quads() == 0)
+  {
+    return Status::failed("No eigenfunction gave a valid layout of about " +
+                          std::to_string(options.NumberOfQuads) +
+                          " quads; ask for more, or take the method Field Aligned.");
+  }
+  Candidate& best = search.Found[0];
+  MorseLayout layout;
+  layout.Draft = std::move(best.Draft);
+  layout.Surface = std::move(best.Cells.Surface);
+  layout.Report.Eigenfunction = best.Number;
+  layout.Report.Eigenvalue = best.Eigenvalue;
+  layout.Report.Minima = best.Cells.Minima;
+  layout.Report.Maxima = best.Cells.Maxima;
+  layout.Report.Saddles = best.Cells.Saddles;
+  layout.Report.Cells = best.Cells.Cells;
+  layout.Report.Cancelled = static_cast<Index>(best.Cancelled);
+  layout.Report.Subdivisions = best.Subdivisions;
+  return layout;
+}
+} // namespace bsr
