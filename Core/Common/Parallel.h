@@ -2,9 +2,12 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
+#include <thread>
 #include <vector>
 
 namespace bsr
@@ -24,6 +27,44 @@ void parallelFor(std::int64_t begin, std::int64_t end, std::int64_t grain, const
   using Range = tbb::blocked_range<std::int64_t>;
   tbb::parallel_for(Range(begin, end, std::max<std::int64_t>(grain, 1)),
     [&body](const Range& r) { body(r.begin(), r.end()); });
+}
+
+/// parallelFor over ranges of at most `grain` indices that asks `monitor` on the calling thread
+/// between ranges, which should take a few hundredths of a second at most; false when it was
+/// cancelled: some indices were left out then.
+template <class Monitor, class Body>
+bool parallelForUntilCancelled(
+  std::int64_t begin, std::int64_t end, std::int64_t grain, Monitor& monitor, const Body& body)
+{
+  std::atomic<bool> stop{monitor.cancelled()};
+  if (stop || end <= begin)
+  {
+    return !stop;
+  }
+  const auto caller = std::this_thread::get_id();
+  using Range = tbb::blocked_range<std::int64_t>;
+  tbb::parallel_for(
+    Range(begin, end, std::max<std::int64_t>(grain, 1)),
+    [&](const Range& r)
+    {
+      if (std::this_thread::get_id() == caller && !stop && monitor.cancelled())
+      {
+        stop = true;
+      }
+      if (!stop)
+      {
+        body(r.begin(), r.end());
+      }
+    },
+    tbb::simple_partitioner());
+  return !stop;
+}
+
+/// Sorts; elements that compare equal must be alike, so that the threads leave no trace.
+template <class Iterator>
+void parallelSort(Iterator begin, Iterator end)
+{
+  tbb::parallel_sort(begin, end);
 }
 
 /**

@@ -241,9 +241,11 @@ Result<QuadLayout> quadRemesh(
   const Sizing::Field field = sizeField(mesh, options);
   QuadLayout layout;
   const bool morse = options.Method == LayoutMethod::MorseSmale;
+  BuildSurfaceOptions building;
+  building.FeatureAngle = morse ? 180.0 : options.FeatureAngle;
   auto surfaces =
-    morse ? buildSurfaces({mesh.Points, mesh.Triangles, {}}, 180.0, layout.Repairs, monitor)
-          : buildSurfaces(mesh, options.FeatureAngle, layout.Repairs, monitor);
+    morse ? buildSurfaces({mesh.Points, mesh.Triangles, {}}, building, layout.Repairs, monitor)
+          : buildSurfaces(mesh, building, layout.Repairs, monitor);
   if (!surfaces)
   {
     return surfaces.status();
@@ -252,10 +254,6 @@ Result<QuadLayout> quadRemesh(
   for (const TriangleSurface& s : *surfaces)
   {
     total += s.area();
-  }
-  if (!(total > 0.0))
-  {
-    return Status::invalidInput("The surface has no area.");
   }
   double done = 0.0;
   for (TriangleSurface& s : *surfaces)
@@ -266,7 +264,11 @@ Result<QuadLayout> quadRemesh(
     const int quads = std::max(24, static_cast<int>(std::lround(share * options.NumberOfQuads)));
     const int euler = s.eulerCharacteristic();
     SubMonitor decimating(part, 0.0, 0.5);
-    if (Status status = decimate(s, std::max(20000, 60 * quads), decimating); !status)
+    DecimateOptions decimation;
+    decimation.Target = std::max(20000, 60 * quads);
+    decimation.Most = 3 * decimation.Target;
+    decimation.MaximumError = 0.02 * std::sqrt(s.area() / quads);
+    if (Status status = decimate(s, decimation, decimating); !status)
     {
       return status;
     }

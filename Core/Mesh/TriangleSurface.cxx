@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
+
 namespace bsr
 {
 int TriangleSurface::valence(Index v) const
@@ -48,6 +50,35 @@ Index TriangleSurface::aliveFaces() const
   return n;
 }
 
+int TriangleSurface::commonNeighbors(Index a, Index b) const
+{
+  std::array<Index, 32> near;
+  std::size_t n = 0;
+  bool all = true;
+  this->around(b,
+    [&](Index h)
+    {
+      all = all && n < near.size();
+      if (all)
+      {
+        near[n++] = this->end(h);
+      }
+    });
+  int common = 0;
+  this->around(a,
+    [&](Index h)
+    {
+      const Index v = this->end(h);
+      if (all)
+      {
+        common += static_cast<int>(std::count(near.begin(), near.begin() + n, v));
+        return;
+      }
+      this->around(b, [&](Index x) { common += this->end(x) == v; });
+    });
+  return common;
+}
+
 bool TriangleSurface::canCollapse(Index h) const
 {
   const Index a = this->start(h);
@@ -69,14 +100,7 @@ bool TriangleSurface::canCollapse(Index h) const
     return false;
   }
   // Link condition: the ends share exactly the two apexes as neighbors.
-  int common = 0;
-  this->around(a,
-    [&](Index ha)
-    {
-      const Index n = this->end(ha);
-      this->around(b, [&](Index hb) { common += this->end(hb) == n; });
-    });
-  if (common != 2 || this->apex(h) == this->apex(o))
+  if (this->apex(h) == this->apex(o) || this->commonNeighbors(a, b) != 2)
   {
     return false;
   }
@@ -91,12 +115,7 @@ void TriangleSurface::collapse(Index h, const Vec3& position)
   const Index o = this->Opposite[h];
   std::array<Index, 2> sides = {h, o};
   std::array<Index, 2> apexes = {this->apex(h), this->apex(o)};
-  std::vector<Index> fan;
-  this->around(a, [&](Index ha) { fan.push_back(ha); });
-  for (Index ha : fan)
-  {
-    this->Vertex[ha] = b;
-  }
+  this->around(a, [&](Index ha) { this->Vertex[ha] = b; });
   for (int s = 0; s < 2; ++s)
   {
     const Index x = this->Opposite[next(sides[s])];

@@ -62,6 +62,8 @@ public:
   int valence(Index v) const;
   /// Number of crease edges at v: 0 smooth, 2 on a crease, anything else a corner.
   int creaseDegree(Index v) const;
+  /// Number of vertices that both are joined to by an edge (repeated if by several).
+  int commonNeighbors(Index a, Index b) const;
   Vec3 areaNormal(Index face) const;
   double area() const; ///< of all triangles but virtual ones
   Index aliveFaces() const;

@@ -20,7 +20,7 @@ struct AnalyticSurface
   {
     bsr::RepairReport report;
     bsr::Monitor monitor;
-    return bsr::buildSurfaces(this->Mesh, 180.0, report, monitor)->front();
+    return bsr::buildSurfaces(this->Mesh, {}, report, monitor)->front();
   }
 };
 

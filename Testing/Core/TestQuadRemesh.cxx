@@ -235,10 +235,28 @@ TEST(QuadRemesh, BadInputIsOneClearError)
   TriangleMesh nan = ring(10, 10, true);
   nan.Points[3].x() = std::nan("");
   EXPECT_EQ(failure(nan).code(), StatusCode::InvalidInput);
-  TriangleMesh fin = ring(10, 10, true);
-  fin.Points.emplace_back(9, 9, 9);
-  fin.Triangles.push_back({0, 1, static_cast<Index>(fin.Points.size()) - 1});
-  EXPECT_EQ(failure(fin).code(), StatusCode::InvalidInput);
+  TriangleMesh moebius;
+  for (Index i = 0; i < 20; ++i)
+  {
+    const double u = 2.0 * M_PI * i / 20.0;
+    for (double w : {-0.3, 0.3})
+    {
+      const double r = 1.0 + w * std::cos(0.5 * u);
+      moebius.Points.emplace_back(r * std::cos(u), r * std::sin(u), w * std::sin(0.5 * u));
+    }
+    const Index a = 2 * i;
+    const Index c = i < 19 ? a + 2 : 1;
+    const Index d = i < 19 ? a + 3 : 0;
+    moebius.Triangles.push_back({a, c, d});
+    moebius.Triangles.push_back({a, d, a + 1});
+  }
+  EXPECT_EQ(failure(moebius).code(), StatusCode::InvalidInput);
+  TriangleMesh flat = ring(10, 10, true);
+  for (Vec3& p : flat.Points)
+  {
+    p = Vec3::Ones();
+  }
+  EXPECT_EQ(failure(flat).code(), StatusCode::InvalidInput);
   TriangleMesh far = ring(10, 10, true);
   far.Triangles[0][0] = 1000000;
   EXPECT_EQ(failure(far).code(), StatusCode::InvalidInput);
