@@ -107,6 +107,21 @@ void addColumn(vtkTable* table, const char* name, const std::vector<bsr::PatchRe
   table->AddColumn(column);
 }
 
+void rationalTo(const std::vector<bsr::PatchReport>& p, vtkTable* table)
+{
+  const auto number = [&](const char* name, const auto& value)
+  { addColumn<vtkDoubleArray>(table, name, p, value); };
+  const auto count = [&](const char* name, const auto& value)
+  { addColumn<vtkIntArray>(table, name, p, value); };
+  number("MeanBefore", [&](std::size_t i) { return p[i].Gain.MeanBefore; });
+  number("Mean", [&](std::size_t i) { return p[i].Gain.MeanAfter; });
+  number("LeastWeight", [&](std::size_t i) { return p[i].Gain.LeastWeight; });
+  number("LargestWeight", [&](std::size_t i) { return p[i].Gain.LargestWeight; });
+  count("Generations", [&](std::size_t i) { return p[i].Gain.Generations; });
+  count("SegmentsU", [&](std::size_t i) { return p[i].SegmentsU; });
+  count("SegmentsV", [&](std::size_t i) { return p[i].SegmentsV; });
+}
+
 void reportTo(const std::vector<bsr::PatchReport>& p, vtkTable* table)
 {
   addColumn<vtkIntArray>(table, "PatchId", p, [](std::size_t i) { return i; });
@@ -119,7 +134,7 @@ void reportTo(const std::vector<bsr::PatchReport>& p, vtkTable* table)
     table, "MinJacobian", p, [&](std::size_t i) { return p[i].MinJacobian; });
 }
 
-void totalsTo(const bsr::G1FitResult& r, double seconds, vtkFieldData* field)
+void totalsTo(const bsr::G1FitResult& r, double seconds, bool rational, vtkFieldData* field)
 {
   bsr::addField(field, "RMS", r.Rms);
   bsr::addField(field, "Max", r.Max);
@@ -142,6 +157,22 @@ void totalsTo(const bsr::G1FitResult& r, double seconds, vtkFieldData* field)
   bsr::addField(field, "DataWeight", weight);
   bsr::addField(field, "RobustScale", scale);
   bsr::addField(field, "Outliers", outliers);
+  if (rational)
+  {
+    double weightSeconds = 0.0;
+    std::vector<double> convergence;
+    for (const bsr::ShellSummary& s : r.Shells)
+    {
+      weightSeconds += s.WeightSeconds;
+      convergence.insert(convergence.end(), s.Convergence.begin(), s.Convergence.end());
+    }
+    if (!convergence.empty())
+    {
+      bsr::addField(field, "Convergence", convergence);
+    }
+    bsr::addField(field, "WeightSeconds", weightSeconds);
+    bsr::addField(field, "PatchesAboveTolerance", r.PatchesAboveTolerance);
+  }
   vtkNew<vtkStringArray> message;
   message->SetName("Message");
   message->InsertNextValue(r.Message);
@@ -201,8 +232,16 @@ int vtkBSplineG1Fit::RequestData(
   o.Correction = static_cast<bsr::CorrectionMethod>(this->ParameterCorrection);
   o.Ends = static_cast<bsr::OpenEnds>(this->OpenEnds);
   o.DataWeight = this->DataWeight;
+  o.CorrelatedNoise = this->CorrelatedNoise;
   o.Robust = this->RobustWeights;
   o.Reassign = this->MovePoints;
+  o.Rational = this->Rational;
+  o.Weights.Optimizer = static_cast<bsr::WeightOptimizer>(this->Optimizer);
+  o.Weights.Evolution.Parents = this->Parents;
+  o.Weights.Evolution.Offspring = this->Offspring;
+  o.Weights.Evolution.Generations = this->Generations;
+  o.Weights.Evolution.Seed = static_cast<std::uint64_t>(this->Seed);
+  o.Weights.Tolerance = this->Tolerance;
   bsr::AlgorithmMonitor monitor(this, 0.0, 0.9);
   const auto result = fit(input, layout, this->WeightArray, o, monitor);
   bsr::SampleOptions sampling;
@@ -217,9 +256,13 @@ int vtkBSplineG1Fit::RequestData(
   }
   bsr::controlNetTo(result->Model, net);
   reportTo(result->Patches, table);
+  if (o.Rational)
+  {
+    rationalTo(result->Patches, table);
+  }
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  totalsTo(*result, seconds.count(), model->GetFieldData());
-  totalsTo(*result, seconds.count(), table->GetFieldData());
+  totalsTo(*result, seconds.count(), o.Rational, model->GetFieldData());
+  totalsTo(*result, seconds.count(), o.Rational, table->GetFieldData());
   return 1;
 }
 
@@ -233,8 +276,16 @@ void vtkBSplineG1Fit::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ParameterCorrection: " << this->ParameterCorrection << "\n";
   os << indent << "OpenEnds: " << this->OpenEnds << "\n";
   os << indent << "DataWeight: " << this->DataWeight << "\n";
+  os << indent << "CorrelatedNoise: " << this->CorrelatedNoise << "\n";
   os << indent << "RobustWeights: " << this->RobustWeights << "\n";
   os << indent << "MovePoints: " << this->MovePoints << "\n";
   os << indent << "WeightArray: " << this->WeightArray << "\n";
+  os << indent << "Rational: " << this->Rational << "\n";
+  os << indent << "Optimizer: " << this->Optimizer << "\n";
+  os << indent << "Parents: " << this->Parents << "\n";
+  os << indent << "Offspring: " << this->Offspring << "\n";
+  os << indent << "Generations: " << this->Generations << "\n";
+  os << indent << "Seed: " << this->Seed << "\n";
+  os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "Resolution: " << this->Resolution << "\n";
 }

@@ -28,7 +28,11 @@
  * (world units, of the points that count), `MinJacobian` (smallest |Su x Sv| over its mean,
  * negative where folded). Field data of ports 0 and 2: `RMS`, `Max`, `MaxNormalJump` (degrees,
  * inside a shell), `FoldedPatches`, `Unknowns`, `OpenEnds`, `MinimumWall`, `Seconds`, and one value
- * a shell of `Shells`, `DataWeight` (K), `RobustScale`, `Outliers`; `Message`.
+ * a shell of `Shells`, `DataWeight` (K), `RobustScale`, `Outliers`; `Message`. With Rational the
+ * report has the columns `MeanBefore`, `Mean` (mean distance of the patch's points without and with
+ * weights), `LeastWeight`, `LargestWeight`, `Generations`, `SegmentsU`, `SegmentsV`, and field data
+ * `Convergence` (best fitness after each generation, mean over the patches), `WeightSeconds`,
+ * `PatchesAboveTolerance`.
  *
  * Reference: H. Mosbach et al., paper 000, section 4.
  *
@@ -69,6 +73,12 @@ public:
   {
     AUTOMATIC = 0,
     KEEP_CLOSED
+  };
+  enum Optimizers
+  {
+    NO_WEIGHTS = 0,
+    EVOLUTION_STRATEGY,
+    DETERMINISTIC
   };
 
   ///@{
@@ -112,6 +122,14 @@ public:
   ///@}
 
   ///@{
+  /// With DataWeight 0: the points' roughness extends over neighbors, as that of CT surfaces does;
+  /// switch it off for clean scans, which are then followed more closely. Default on.
+  vtkSetMacro(CorrelatedNoise, bool);
+  vtkGetMacro(CorrelatedNoise, bool);
+  vtkBooleanMacro(CorrelatedNoise, bool);
+  ///@}
+
+  ///@{
   /// Weigh outliers (debris, pits) down. Default on.
   vtkSetMacro(RobustWeights, bool);
   vtkGetMacro(RobustWeights, bool);
@@ -129,6 +147,42 @@ public:
   /// Point array of weights; empty (default) or "None": all 1.
   void SetWeightArray(const char* name);
   const char* GetWeightArray() const { return this->WeightArray.c_str(); }
+  ///@}
+
+  ///@{
+  /// Give the patches weights (NURBS) after the fit, and refine them where Tolerance is missed.
+  /// Default off.
+  vtkSetMacro(Rational, bool);
+  vtkGetMacro(Rational, bool);
+  vtkBooleanMacro(Rational, bool);
+  ///@}
+
+  ///@{
+  /// How weights are found: NO_WEIGHTS (all 1), EVOLUTION_STRATEGY (paper 003, section 5.1) or
+  /// DETERMINISTIC (separable least squares, default).
+  vtkSetClampMacro(Optimizer, int, NO_WEIGHTS, DETERMINISTIC);
+  vtkGetMacro(Optimizer, int);
+  ///@}
+
+  ///@{
+  /// Evolution strategy: parents (gamma, default 10, at least 2), descendants a generation (mu,
+  /// default 50), generations at most (default 100). Seed (default 0) makes runs reproducible.
+  vtkSetClampMacro(Parents, int, 2, 1000);
+  vtkGetMacro(Parents, int);
+  vtkSetClampMacro(Offspring, int, 1, 10000);
+  vtkGetMacro(Offspring, int);
+  vtkSetClampMacro(Generations, int, 0, 100000);
+  vtkGetMacro(Generations, int);
+  vtkSetMacro(Seed, int);
+  vtkGetMacro(Seed, int);
+  ///@}
+
+  ///@{
+  /// With Rational: largest mean distance of a patch's points, in world units (delta of paper 003,
+  /// equation 2). Patches above it are refined: the segments of their strips are cut in two or
+  /// four. Default 0: none.
+  vtkSetMacro(Tolerance, double);
+  vtkGetMacro(Tolerance, double);
   ///@}
 
   ///@{
@@ -154,9 +208,17 @@ private:
   int ParameterCorrection = TAYLOR;
   int OpenEnds = AUTOMATIC;
   double DataWeight = 0.0;
+  bool CorrelatedNoise = true;
   bool RobustWeights = true;
   bool MovePoints = true;
   std::string WeightArray;
+  bool Rational = false;
+  int Optimizer = DETERMINISTIC;
+  int Parents = 10;
+  int Offspring = 50;
+  int Generations = 100;
+  int Seed = 0;
+  double Tolerance = 0.0;
   int Resolution = 4;
 };
 

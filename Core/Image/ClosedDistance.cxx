@@ -2,7 +2,7 @@
 
 #include "Image/CrossingDistance.h"
 #include "Image/DigitalTopology.h"
-#include "Image/MonitoredLoop.h"
+#include "Common/MonitoredLoop.h"
 #include "Image/ScalarTypes.h"
 
 #include <algorithm>

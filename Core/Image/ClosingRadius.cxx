@@ -2,7 +2,7 @@
 
 #include "Image/CrossingDistance.h"
 #include "Image/DistanceTransform.h"
-#include "Image/MonitoredLoop.h"
+#include "Common/MonitoredLoop.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include "Common/UnionFind.h"
 
-#include "Image/MonitoredLoop.h"
+#include "Common/MonitoredLoop.h"
 
 #include <algorithm>
 #include <cstring>

@@ -3,7 +3,7 @@
 #include "Image/DigitalTopology.h"
 #include "Image/DistanceTransform.h"
 #include "Image/Lumen.h"
-#include "Image/MonitoredLoop.h"
+#include "Common/MonitoredLoop.h"
 #include "Image/SmoothWall.h"
 #include "Image/SurfaceVoxels.h"
 

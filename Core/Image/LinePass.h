@@ -2,7 +2,7 @@
 
 #include "Image/ImageView.h"
 #include "Image/LineEnvelope.h"
-#include "Image/MonitoredLoop.h"
+#include "Common/MonitoredLoop.h"
 
 #include <vector>
 

@@ -3,7 +3,7 @@
 #include "Image/BallClosing.h"
 #include "Image/DigitalTopology.h"
 #include "Image/DistanceTransform.h"
-#include "Image/MonitoredLoop.h"
+#include "Common/MonitoredLoop.h"
 #include "Image/Visibility.h"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "Image/SmoothWall.h"
 
-#include "Image/MonitoredLoop.h"
+#include "Common/MonitoredLoop.h"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 #include "Image/Threshold.h"
 
-#include "Image/MonitoredLoop.h"
+#include "Common/MonitoredLoop.h"
 #include "Image/ScalarTypes.h"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "Image/Visibility.h"
 
-#include "Image/MonitoredLoop.h"
+#include "Common/MonitoredLoop.h"
 
 #include <array>
 #include <bitset>

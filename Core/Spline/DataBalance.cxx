@@ -77,7 +77,7 @@ Fold makeFold(
 
 Result<std::vector<BalanceScore>> scanDataWeight(const PatchNet& net, FitSolver& solver,
   const FitEquations& equations, const std::vector<FitPoint>& points, double lambda,
-  Monitor& monitor, double& best)
+  bool correlatedNoise, Monitor& monitor, double& best)
 {
   std::vector<BalanceScore> scores;
   for (const double k : {10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 1e5})
@@ -116,7 +116,12 @@ Result<std::vector<BalanceScore>> scanDataWeight(const PatchNet& net, FitSolver&
     scores[i].Error = std::sqrt(scores[i].Error / std::max(weight, 1e-300));
     least = scores[i].Error < scores[least].Error ? i : least;
   }
-  auto surface = solver.solveRoughly(equations.blocks(net, lambda, scores[least].DataWeight));
+  best = scores[least].DataWeight;
+  if (!correlatedNoise)
+  {
+    return scores;
+  }
+  auto surface = solver.solveRoughly(equations.blocks(net, lambda, best));
   if (!surface)
   {
     return surface.status();

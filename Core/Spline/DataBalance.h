@@ -17,10 +17,11 @@ struct BalanceScore
  * the roughness of CT surfaces is correlated over several voxels: single left-out points would be
  * predicted by neighbors with the same error, and the noise be followed.
  * What is correlated over more than a region still looks like shape; so where the residuals of
- * neighbors are correlated, the smoothest K is taken whose error is up to a half above the least.
+ * neighbors are correlated, the smoothest K is taken whose error is up to a half above the least;
+ * not so without `correlatedNoise`: then what is correlated is the shape that the patches miss.
  * Returns the scores, increasing in K; `best` is set to the K chosen.
  */
 Result<std::vector<BalanceScore>> scanDataWeight(const PatchNet& net, FitSolver& solver,
   const FitEquations& equations, const std::vector<FitPoint>& points, double lambda,
-  Monitor& monitor, double& best);
+  bool correlatedNoise, Monitor& monitor, double& best);
 } // namespace bsr

@@ -29,6 +29,16 @@ PatchPoint NetEvaluator::at(Index patch, const BasisValues& u, const BasisValues
   return {sum.col(0), sum.col(1), sum.col(2), sum.col(3), sum.col(4), sum.col(5)};
 }
 
+RationalPatch ownPatch(const PatchNet& net, const NetPoints& points, Index patch)
+{
+  RationalPatch own(net.segments(), net.segments());
+  for (int l = 0; l < net.perPatch(); ++l)
+  {
+    own.ControlPoints[l] << points.row(net.at(patch, l)).transpose(), 1.0;
+  }
+  return own;
+}
+
 std::vector<std::int64_t> sortByPatch(std::vector<FitPoint>& points, Index patches)
 {
   std::stable_sort(points.begin(), points.end(),

@@ -2,6 +2,7 @@
 
 #include "Spline/Basis.h"
 #include "Spline/PatchNet.h"
+#include "Spline/RationalPatch.h"
 
 namespace bsr
 {
@@ -22,25 +23,14 @@ struct FitPoint
 
 using NetPoints = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
-/// A point of a polynomial patch with its derivatives.
-struct PatchPoint
-{
-  Vec3 Point;
-  Vec3 Du;
-  Vec3 Dv;
-  Vec3 Duu;
-  Vec3 Duv;
-  Vec3 Dvv;
-
-  Vec3 normal() const { return this->Du.cross(this->Dv); }
-};
-
 /// Evaluates the patches of a net.
 class NetEvaluator
 {
 public:
-  NetEvaluator(const PatchNet& net, const NetPoints& points)
-      : Net(net), Points(points), Knots(segmentKnots(3, net.segments(), 2))
+  /// Patches of `own` that are not empty take the place of the net's.
+  NetEvaluator(
+    const PatchNet& net, const NetPoints& points, const std::vector<RationalPatch>* own = nullptr)
+      : Net(net), Points(points), Own(own), Knots(segmentKnots(3, net.segments(), 2))
   {
   }
 
@@ -50,15 +40,24 @@ public:
   }
   PatchPoint at(Index patch, double u, double v) const
   {
+    if (this->Own && !this->Own->empty() && !(*this->Own)[patch].empty())
+    {
+      return (*this->Own)[patch].at(u, v);
+    }
     return this->at(patch, this->basis(u), this->basis(v));
   }
+  /// Of the net's own patch.
   PatchPoint at(Index patch, const BasisValues& u, const BasisValues& v) const;
 
 private:
   const PatchNet& Net;
   const NetPoints& Points;
+  const std::vector<RationalPatch>* Own;
   std::vector<double> Knots;
 };
+
+/// A patch of a net on its own, with weights of 1.
+RationalPatch ownPatch(const PatchNet& net, const NetPoints& points, Index patch);
 
 /// Sorts by patch, keeping the order within one; returns the first point of each patch and the end.
 std::vector<std::int64_t> sortByPatch(std::vector<FitPoint>& points, Index patches);

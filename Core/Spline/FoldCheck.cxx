@@ -10,7 +10,9 @@ namespace
 {
 constexpr int Samples = 25;
 
-PatchShape shapeOf(const NetEvaluator& surface, Index patch, const std::vector<BasisValues>& basis)
+/// `at(i, j)` gives the surface at sample i along u and j along v.
+template <class At>
+PatchShape shapeOf(const At& at)
 {
   std::vector<Vec3> normal(Samples * Samples);
   double mean = 0.0;
@@ -20,7 +22,7 @@ PatchShape shapeOf(const NetEvaluator& surface, Index patch, const std::vector<B
     for (int i = 0; i < Samples; ++i)
     {
       Vec3& n = normal[j * Samples + i];
-      n = surface.at(patch, basis[i], basis[j]).normal();
+      n = at(i, j).normal();
       mean += n.norm() / (Samples * Samples);
       least = std::min(least, n.norm());
     }
@@ -66,15 +68,20 @@ std::vector<PatchShape> checkShapes(const PatchNet& net, const NetPoints& surfac
     {
       for (std::int64_t p = begin; p < end; ++p)
       {
-        shapes[p] = shapeOf(evaluator, static_cast<Index>(p), basis);
+        const auto patch = static_cast<Index>(p);
+        shapes[p] = shapeOf([&](int i, int j) { return evaluator.at(patch, basis[i], basis[j]); });
       }
     });
   return shapes;
 }
 
-double largestNormalJump(const QuadComplex& complex, const PatchNet& net, const NetPoints& surface)
+PatchShape checkShape(const RationalPatch& patch)
 {
-  const NetEvaluator evaluator(net, surface);
+  return shapeOf([&](int i, int j) { return patch.at(i / (Samples - 1.0), j / (Samples - 1.0)); });
+}
+
+double largestNormalJump(const QuadComplex& complex, const NetEvaluator& evaluator)
+{
   const auto normalAt = [&](Index h, double t)
   {
     const double uv[4][2] = {{t, 0.0}, {1.0, t}, {1.0 - t, 1.0}, {0.0, 1.0 - t}};

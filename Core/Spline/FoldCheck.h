@@ -16,7 +16,8 @@ struct PatchShape
 bool normalsFold(const std::vector<Vec3>& normals, int grid);
 
 std::vector<PatchShape> checkShapes(const PatchNet& net, const NetPoints& surface);
+PatchShape checkShape(const RationalPatch& patch);
 
 /// Largest angle in degrees between the normals of two patches along their common sides.
-double largestNormalJump(const QuadComplex& complex, const PatchNet& net, const NetPoints& surface);
+double largestNormalJump(const QuadComplex& complex, const NetEvaluator& surface);
 } // namespace bsr

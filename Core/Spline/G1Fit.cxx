@@ -65,20 +65,30 @@ std::unique_ptr<FitSolver> makeSolver(
   return makeReducedSolver(net, space);
 }
 
-ShellSummary summarize(
-  const PatchNet& net, const ShellFitResult& fit, bool inner, std::vector<PatchReport>& reports)
+/// `own`: the shell's rational patches, where it has them.
+ShellSummary summarize(const PatchNet& net, const ShellFitResult& fit, const RationalShell& own,
+  bool inner, std::vector<PatchReport>& reports)
 {
   // Distances at the true feet, not at the parameters of the last equations.
-  std::vector<FitPoint> points = fit.Points;
-  correctParameters(net, fit.Net, CorrectionMethod::Newton, points);
-  const auto r = residuals(net, fit.Net, points);
+  const NetEvaluator surface(net, fit.Net, &own.Patches);
+  std::vector<FitPoint> points = own.Patches.empty() ? fit.Points : own.Points;
+  correctParameters(surface, CorrectionMethod::Newton, points);
+  const auto r = residuals(surface, points);
   const auto shapes = checkShapes(net, fit.Net);
   const std::size_t first = reports.size();
-  for (const PatchShape& s : shapes)
+  for (std::size_t p = 0; p < shapes.size(); ++p)
   {
     PatchReport report;
     report.Side = inner ? Shell::Inner : Shell::Outer;
-    report.MinJacobian = s.MinJacobian;
+    report.MinJacobian = shapes[p].MinJacobian;
+    report.SegmentsU = report.SegmentsV = net.segments();
+    if (!own.Patches.empty())
+    {
+      report.MinJacobian = checkShape(own.Patches[p]).MinJacobian;
+      report.SegmentsU = own.Patches[p].SegmentsU;
+      report.SegmentsV = own.Patches[p].SegmentsV;
+      report.Gain = own.Gains[p];
+    }
     reports.push_back(report);
   }
   ShellSummary total;
@@ -105,6 +115,8 @@ ShellSummary summarize(
   total.Rms = total.Points ? std::sqrt(total.Rms / static_cast<double>(total.Points)) : 0.0;
   total.DataWeight = fit.DataWeight;
   total.RobustScale = fit.RobustScale;
+  total.Convergence = own.History;
+  total.WeightSeconds = own.Seconds;
   return total;
 }
 
@@ -154,6 +166,9 @@ private:
     this->Out.Unknowns = solver->unknowns();
     const ShellLayout layout{&complex, &net, &this->Full.Points};
     std::vector<ShellFitResult> shells;
+    shells.reserve(2); // the second shell refers to the first
+    std::vector<ShellFitOptions> options;
+    const double share = this->Options.Rational ? 0.3 : 0.45; // of a shell in the progress
     for (int side = 0; side < 2; ++side)
     {
       auto points = selectPoints(this->Input, this->Full, this->Cut, side);
@@ -177,7 +192,7 @@ private:
           std::to_string(complex.faces()) +
           " quads; give at least four a quad on average, or a layout of fewer quads.");
       }
-      SubMonitor part(this->Watch, 0.45 * side, 0.45 * (side + 1));
+      SubMonitor part(this->Watch, share * side, share * (side + 1));
       ShellFitOptions shellOptions = this->shellOptions();
       if (side == 1)
       {
@@ -196,9 +211,71 @@ private:
         break;
       }
       shells.push_back(std::move(*fit));
+      options.push_back(shellOptions);
     }
-    this->finish(complex, net, shells);
+    SubMonitor rest(this->Watch, 2.0 * share, 1.0);
+    auto own = this->rationalShells(layout, *solver, shells, options, rest);
+    if (!own)
+    {
+      return own.status();
+    }
+    this->finish(complex, net, shells, *own);
     return std::move(this->Out);
+  }
+
+  /// One a shell; empty ones where patches are not to be rational.
+  Result<std::vector<RationalShell>> rationalShells(const ShellLayout& layout, FitSolver& solver,
+    const std::vector<ShellFitResult>& shells, const std::vector<ShellFitOptions>& options,
+    Monitor& monitor)
+  {
+    std::vector<RationalShell> own(shells.size());
+    if (!this->Options.Rational)
+    {
+      return own;
+    }
+    RationalOptions o = this->Options.Weights;
+    o.Lambda = this->Options.Fairing.back();
+    std::vector<const ShellFitResult*> fits;
+    for (std::size_t s = 0; s < shells.size(); ++s)
+    {
+      SubMonitor part(monitor, 0.4 * s, 0.4 * (s + 1));
+      auto shell = optimizeWeights(layout, solver, shells[s], options[s], o, part);
+      if (!shell)
+      {
+        return shell.status();
+      }
+      own[s] = std::move(*shell);
+      fits.push_back(&shells[s]);
+    }
+    if (o.Tolerance > 0.0)
+    {
+      SubMonitor part(monitor, 0.8, 1.0);
+      if (Status status = refineShells(layout, own, fits, options, o, part); !status)
+      {
+        return status;
+      }
+      this->sayMissed(own, o.Tolerance);
+    }
+    return own;
+  }
+
+  void sayMissed(const std::vector<RationalShell>& own, double tolerance)
+  {
+    double worst = 0.0;
+    for (const RationalShell& shell : own)
+    {
+      for (const PatchGain& g : shell.Gains)
+      {
+        this->Out.PatchesAboveTolerance += g.MeanAfter > tolerance;
+        worst = std::max(worst, g.MeanAfter);
+      }
+    }
+    if (this->Out.PatchesAboveTolerance > 0)
+    {
+      this->say(std::to_string(this->Out.PatchesAboveTolerance) +
+                " patches miss the tolerance (largest mean distance " + std::to_string(worst) +
+                "); use more segments or quads.");
+    }
   }
 
   /// Share of the patches' quarters along u and v (4 x 4 a patch) that have points, over what as
@@ -256,30 +333,35 @@ private:
     o.Fairing = this->Options.Fairing;
     o.Correction = this->Options.Correction;
     o.DataWeight = this->Options.DataWeight;
+    o.CorrelatedNoise = this->Options.CorrelatedNoise;
     o.Robust = this->Options.Robust;
     o.Reassign = this->Options.Reassign;
     return o;
   }
 
-  void finish(
-    const QuadComplex& complex, const PatchNet& net, const std::vector<ShellFitResult>& shells)
+  void finish(const QuadComplex& complex, const PatchNet& net,
+    const std::vector<ShellFitResult>& shells, const std::vector<RationalShell>& own)
   {
     double squares = 0.0;
     double count = 0.0;
     for (std::size_t s = 0; s < shells.size(); ++s)
     {
-      this->Out.Shells.push_back(summarize(net, shells[s], s == 1, this->Out.Patches));
+      this->Out.Shells.push_back(summarize(net, shells[s], own[s], s == 1, this->Out.Patches));
       const ShellSummary& t = this->Out.Shells.back();
       squares += t.Rms * t.Rms * static_cast<double>(t.Points);
       count += static_cast<double>(t.Points);
       this->Out.Max = std::max(this->Out.Max, t.Max);
       this->Out.FoldedPatches += shells[s].Folded + shells[s].FoldedWalls;
-      this->Out.MaxNormalJump =
-        std::max(this->Out.MaxNormalJump, largestNormalJump(complex, net, shells[s].Net));
+      this->Out.MaxNormalJump = std::max(this->Out.MaxNormalJump,
+        largestNormalJump(complex, NetEvaluator(net, shells[s].Net, &own[s].Patches)));
     }
     this->Out.Rms = count > 0 ? std::sqrt(squares / count) : 0.0;
-    this->Out.Model =
-      buildModel(complex, net, shells[0].Net, shells.size() > 1 ? &shells[1].Net : nullptr);
+    std::vector<std::vector<RationalPatch>> patches;
+    for (std::size_t s = 0; s < shells.size(); ++s)
+    {
+      patches.push_back(own[s].Patches.empty() ? ownPatches(net, shells[s].Net) : own[s].Patches);
+    }
+    this->Out.Model = buildModel(complex, patches[0], patches.size() > 1 ? &patches[1] : nullptr);
     if (this->Out.FoldedPatches > 0)
     {
       this->say(std::to_string(this->Out.FoldedPatches) +

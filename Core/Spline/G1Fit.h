@@ -3,6 +3,7 @@
 #include "Common/Monitor.h"
 #include "Common/Status.h"
 #include "Spline/ParameterCorrection.h"
+#include "Spline/RationalStage.h"
 #include "Spline/SplineModel.h"
 
 #include <string>
@@ -42,8 +43,15 @@ struct G1FitOptions
   CorrectionMethod Correction = CorrectionMethod::Taylor;
   OpenEnds Ends = OpenEnds::Automatic;
   double DataWeight = 0.0; ///< K, points a patch that the data count as; 0: from the noise
-  bool Robust = true;      ///< weigh debris and pits down
-  bool Reassign = true;    ///< points may move on to neighboring patches
+  /// With DataWeight 0: the points' roughness extends over neighbors, as that of CT surfaces does;
+  /// off for clean scans, where what neighbors share is shape.
+  bool CorrelatedNoise = true;
+  bool Robust = true;   ///< weigh debris and pits down
+  bool Reassign = true; ///< points may move on to neighboring patches
+  /// Patches get weights, and are refined where they miss a tolerance (paper 003, section 5.1);
+  /// its Lambda is that of the last pass.
+  bool Rational = false;
+  RationalOptions Weights;
 };
 
 struct PatchReport
@@ -53,6 +61,9 @@ struct PatchReport
   double Rms = 0.0;        ///< of their distances, world units
   double Max = 0.0;
   double MinJacobian = 1.0; ///< smallest |Su x Sv| over its mean; negative: folded
+  int SegmentsU = 3;
+  int SegmentsV = 3;
+  PatchGain Gain; ///< of rational patches
 };
 
 struct ShellSummary
@@ -63,6 +74,10 @@ struct ShellSummary
   double Max = 0.0;
   double DataWeight = 0.0;
   double RobustScale = 0.0;
+  /// Of rational patches: mean over the patches of the best fitness in each generation of the
+  /// evolution strategy, and the seconds that the weights took.
+  std::vector<double> Convergence;
+  double WeightSeconds = 0.0;
 };
 
 struct G1FitResult
@@ -75,9 +90,10 @@ struct G1FitResult
   double MaxNormalJump = 0.0; ///< degrees
   int FoldedPatches = 0;
   int OpenEndCount = 0;
-  std::int64_t Unknowns = 0; ///< of one shell's system
-  double MinimumWall = 0.0;  ///< between the shells, negative where they cross; 0 without inner
-  std::string Message;       ///< what the user should know, e.g. that there is no inner shell
+  std::int64_t Unknowns = 0;     ///< of one shell's system
+  double MinimumWall = 0.0;      ///< between the shells, negative where they cross; 0 without inner
+  int PatchesAboveTolerance = 0; ///< of the rational patches' mean distances
+  std::string Message;           ///< what the user should know, e.g. that there is no inner shell
 };
 
 /**

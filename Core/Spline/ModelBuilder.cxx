@@ -1,5 +1,7 @@
 #include "Spline/ModelBuilder.h"
 
+#include <map>
+
 namespace bsr
 {
 namespace
@@ -13,40 +15,36 @@ int transposedSide(int s)
 class Builder
 {
 public:
-  Builder(const QuadComplex& complex, const PatchNet& net) : Complex(complex), Net(net)
-  {
-    this->Model.Knots = segmentKnots(3, net.segments(), 2);
-    this->LinearKnots = static_cast<std::int64_t>(this->Model.Knots.size());
-  }
+  explicit Builder(const QuadComplex& complex) : Complex(complex) {}
 
-  void addShell(const NetPoints& points, Shell side)
+  void addShell(const std::vector<RationalPatch>& patches, Shell side)
   {
     const auto first = static_cast<std::int64_t>(this->Model.Patches.size());
     const bool turn = side == Shell::Inner;
-    const int n = this->Net.side();
     for (Index f = 0; f < this->Complex.faces(); ++f)
     {
-      this->addPatch(side, n, 0);
-      for (int l = 0; l < n * n; ++l)
+      const RationalPatch& own = patches[f];
+      const int n = own.countU();
+      const int m = own.countV();
+      this->addPatch(
+        side, turn ? own.SegmentsV : own.SegmentsU, 3, turn ? own.SegmentsU : own.SegmentsV);
+      for (int l = 0; l < n * m; ++l)
       {
-        const int i = l % n;
-        const int j = l / n;
-        this->addPoint(points.row(turn ? this->Net.at(f, j, i) : this->Net.at(f, i, j)));
+        this->Model.ControlPoints.push_back(own.ControlPoints[turn ? (l % m) * n + l / m : l]);
       }
       std::array<std::int64_t, 4> neighbor{};
       for (int k = 0; k < 4; ++k)
       {
         const Index t = this->Complex.twin(4 * f + k);
-        const int own = turn ? transposedSide(k) : k;
-        neighbor[own] = t < 0 ? -1 : 4 * (first + t / 4) + (turn ? transposedSide(t % 4) : t % 4);
+        const int mine = turn ? transposedSide(k) : k;
+        neighbor[mine] = t < 0 ? -1 : 4 * (first + t / 4) + (turn ? transposedSide(t % 4) : t % 4);
       }
       this->Model.Neighbors.push_back(neighbor);
     }
   }
 
-  void addWalls(const NetPoints& outer, const NetPoints& inner)
+  void addWalls(const std::vector<RationalPatch>& outer, const std::vector<RationalPatch>& inner)
   {
-    this->Model.Knots.insert(this->Model.Knots.end(), {0.0, 0.0, 1.0, 1.0});
     for (const auto& loop : this->Complex.borderLoops())
     {
       const auto first = static_cast<std::int64_t>(this->Model.Patches.size());
@@ -65,34 +63,46 @@ public:
   SplineModel Model;
 
 private:
-  void addPatch(Shell side, int countV, std::int64_t firstKnotV)
+  /// First knot of a direction; patches share the vectors.
+  std::int64_t knots(int degree, int segments)
+  {
+    const auto [it, isNew] = this->FirstKnot.try_emplace(
+      {degree, segments}, static_cast<std::int64_t>(this->Model.Knots.size()));
+    if (isNew)
+    {
+      const auto k = segmentKnots(degree, segments, 2);
+      this->Model.Knots.insert(this->Model.Knots.end(), k.begin(), k.end());
+    }
+    return it->second;
+  }
+
+  void addPatch(Shell side, int segmentsU, int degreeV, int segmentsV)
   {
     SplinePatch p;
     p.Side = side;
-    p.CountU = this->Net.side();
-    p.CountV = countV;
-    p.DegreeV = countV == 2 ? 1 : 3;
-    p.FirstKnotV = firstKnotV;
+    p.CountU = 2 * segmentsU + 2;
+    p.DegreeV = degreeV;
+    p.CountV = degreeV == 1 ? 2 : 2 * segmentsV + 2;
+    p.FirstKnotU = this->knots(3, segmentsU);
+    p.FirstKnotV = this->knots(degreeV, segmentsV);
     p.FirstControlPoint = static_cast<std::int64_t>(this->Model.ControlPoints.size());
     this->Model.Patches.push_back(p);
   }
 
-  template <class Row>
-  void addPoint(const Row& p)
-  {
-    this->Model.ControlPoints.emplace_back(p[0], p[1], p[2], 1.0);
-  }
-
-  void addWall(Index h, const NetPoints& outer, const NetPoints& inner)
+  void addWall(
+    Index h, const std::vector<RationalPatch>& outer, const std::vector<RationalPatch>& inner)
   {
     const auto wall = static_cast<std::int64_t>(this->Model.Patches.size());
-    const int n = this->Net.side();
-    this->addPatch(Shell::Wall, 2, this->LinearKnots);
-    for (const NetPoints* shell : {&outer, &inner})
+    const RationalPatch& own = outer[h / 4];
+    this->addPatch(Shell::Wall, h % 2 == 0 ? own.SegmentsU : own.SegmentsV, 1, 1);
+    for (const auto* shell : {&outer, &inner})
     {
+      const RationalPatch& patch = (*shell)[h / 4];
+      const int n = sideCount(patch, h % 4);
       for (int c = 0; c < n; ++c)
       {
-        this->addPoint(shell->row(this->Net.row(h, 0, n - 1 - c)));
+        this->Model.ControlPoints.push_back(
+          patch.ControlPoints[sideIndex(patch, h % 4, n - 1 - c)]);
       }
     }
     const std::int64_t innerPatch = this->Complex.faces() + h / 4;
@@ -103,15 +113,14 @@ private:
   }
 
   const QuadComplex& Complex;
-  const PatchNet& Net;
-  std::int64_t LinearKnots;
+  std::map<std::pair<int, int>, std::int64_t> FirstKnot;
 };
 } // namespace
 
-SplineModel buildModel(
-  const QuadComplex& complex, const PatchNet& net, const NetPoints& outer, const NetPoints* inner)
+SplineModel buildModel(const QuadComplex& complex, const std::vector<RationalPatch>& outer,
+  const std::vector<RationalPatch>* inner)
 {
-  Builder b(complex, net);
+  Builder b(complex);
   b.addShell(outer, Shell::Outer);
   if (inner)
   {
@@ -122,5 +131,16 @@ SplineModel buildModel(
     }
   }
   return std::move(b.Model);
+}
+
+std::vector<RationalPatch> ownPatches(const PatchNet& net, const NetPoints& points)
+{
+  std::vector<RationalPatch> own;
+  own.reserve(net.patches());
+  for (Index f = 0; f < net.patches(); ++f)
+  {
+    own.push_back(ownPatch(net, points, f));
+  }
+  return own;
 }
 } // namespace bsr

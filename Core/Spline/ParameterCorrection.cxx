@@ -76,11 +76,13 @@ void taylor(const NetEvaluator& surface, FitPoint& p)
   p.V = std::clamp(p.V + d.V, 0.0, 1.0);
 }
 
-void newton(const NetEvaluator& surface, FitPoint& p)
+/// `at(u, v)` gives the point of p's patch.
+template <class At>
+void newton(const At& at, FitPoint& p, int iterations = 12)
 {
-  for (int i = 0; i < 12; ++i)
+  for (int i = 0; i < iterations; ++i)
   {
-    const PatchPoint s = surface.at(p.Patch, p.U, p.V);
+    const PatchPoint s = at(p.U, p.V);
     const Vec3 e = p.Position - s.Point;
     const double gu = s.Du.dot(e);
     const double gv = s.Dv.dot(e);
@@ -101,7 +103,7 @@ void newton(const NetEvaluator& surface, FitPoint& p)
     {
       u = std::clamp(p.U + d.U, 0.0, 1.0);
       v = std::clamp(p.V + d.V, 0.0, 1.0);
-      if ((p.Position - surface.at(p.Patch, u, v).Point).squaredNorm() <= before)
+      if ((p.Position - at(u, v).Point).squaredNorm() <= before)
       {
         break;
       }
@@ -143,7 +145,23 @@ bool cross(const NetEvaluator& surface, const QuadComplex& complex, FitPoint& p)
 void correctParameters(const PatchNet& net, const NetPoints& surface, CorrectionMethod method,
   std::vector<FitPoint>& points, const QuadComplex* complex)
 {
-  const NetEvaluator evaluator(net, surface);
+  correctParameters(NetEvaluator(net, surface), method, points, complex);
+}
+
+void correctParameters(const NetEvaluator& evaluator, CorrectionMethod method,
+  std::vector<FitPoint>& points, const QuadComplex* complex)
+{
+  const auto step = [&](FitPoint& p)
+  {
+    if (method == CorrectionMethod::Taylor)
+    {
+      taylor(evaluator, p);
+    }
+    else
+    {
+      newton([&](double u, double v) { return evaluator.at(p.Patch, u, v); }, p);
+    }
+  };
   parallelFor(0, static_cast<std::int64_t>(points.size()), 1024,
     [&](std::int64_t begin, std::int64_t end)
     {
@@ -154,20 +172,34 @@ void correctParameters(const PatchNet& net, const NetPoints& surface, Correction
         {
           continue;
         }
-        const auto step = method == CorrectionMethod::Taylor ? taylor : newton;
-        step(evaluator, p);
+        step(p);
         if (complex && cross(evaluator, *complex, p))
         {
-          step(evaluator, p);
+          step(p);
         }
       }
     });
 }
 
+void correctOnPatch(const RationalPatch& patch, FitPoint* first, FitPoint* last, int iterations)
+{
+  for (FitPoint* p = first; p != last; ++p)
+  {
+    if (!p->Fixed)
+    {
+      newton([&](double u, double v) { return patch.at(u, v); }, *p, iterations);
+    }
+  }
+}
+
 std::vector<Residual> residuals(
   const PatchNet& net, const NetPoints& surface, const std::vector<FitPoint>& points)
 {
-  const NetEvaluator evaluator(net, surface);
+  return residuals(NetEvaluator(net, surface), points);
+}
+
+std::vector<Residual> residuals(const NetEvaluator& evaluator, const std::vector<FitPoint>& points)
+{
   std::vector<Residual> r(points.size());
   parallelFor(0, static_cast<std::int64_t>(points.size()), 2048,
     [&](std::int64_t begin, std::int64_t end)

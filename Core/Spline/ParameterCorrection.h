@@ -20,6 +20,14 @@ enum class CorrectionMethod
 void correctParameters(const PatchNet& net, const NetPoints& surface, CorrectionMethod method,
   std::vector<FitPoint>& points, const QuadComplex* complex = nullptr);
 
+/// The same on any surface of a net, e.g. with rational patches of their own.
+void correctParameters(const NetEvaluator& surface, CorrectionMethod method,
+  std::vector<FitPoint>& points, const QuadComplex* complex = nullptr);
+
+/// Steps of Newton's method for the points of one patch.
+void correctOnPatch(
+  const RationalPatch& patch, FitPoint* first, FitPoint* last, int iterations = 12);
+
 /// Distance of each point to the surface at its parameters, and its component along the normal.
 struct Residual
 {
@@ -28,4 +36,5 @@ struct Residual
 };
 std::vector<Residual> residuals(
   const PatchNet& net, const NetPoints& surface, const std::vector<FitPoint>& points);
+std::vector<Residual> residuals(const NetEvaluator& surface, const std::vector<FitPoint>& points);
 } // namespace bsr

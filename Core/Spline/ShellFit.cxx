@@ -202,8 +202,8 @@ private:
       return Status::ok();
     }
     this->assemble();
-    auto scores = scanDataWeight(
-      this->Net, this->Solver, this->Equations, this->Points, lambda, this->Watch, this->K);
+    auto scores = scanDataWeight(this->Net, this->Solver, this->Equations, this->Points, lambda,
+      this->Options.CorrelatedNoise, this->Watch, this->K);
     if (!scores)
     {
       return scores.status();

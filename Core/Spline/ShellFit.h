@@ -21,10 +21,11 @@ struct ShellFitOptions
 {
   std::vector<double> Fairing = {0.9, 0.5, 0.1}; ///< lambda of each pass, in [0, 1)
   CorrectionMethod Correction = CorrectionMethod::Taylor;
-  double DataWeight = 0.0; ///< K: reference points a patch; 0: found by cross-validation
-  bool Robust = true;      ///< weigh outliers down (Tukey)
-  bool Reassign = true;    ///< points may move on to neighboring patches
-  int ExtraPasses = 2;     ///< repetitions of the last pass
+  double DataWeight = 0.0;     ///< K: reference points a patch; 0: found by cross-validation
+  bool CorrelatedNoise = true; ///< the points' roughness extends over neighbors (CT surfaces)
+  bool Robust = true;          ///< weigh outliers down (Tukey)
+  bool Reassign = true;        ///< points may move on to neighboring patches
+  int ExtraPasses = 2;         ///< repetitions of the last pass
   /// Where given, fairing acts on the difference to this net: a shell whose shape this one shares.
   const NetPoints* RestShape = nullptr;
   /// With a RestShape: it is the outer shell, and this one keeps at least this distance inside it.

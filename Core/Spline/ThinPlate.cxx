@@ -52,10 +52,11 @@ Gram gramMatrices(int segments)
 Eigen::MatrixXd tensor(const Eigen::MatrixXd& u, const Eigen::MatrixXd& v)
 {
   const Eigen::Index n = u.rows();
-  Eigen::MatrixXd m(n * n, n * n);
-  for (Eigen::Index j = 0; j < n; ++j)
+  const Eigen::Index rows = v.rows();
+  Eigen::MatrixXd m(n * rows, n * rows);
+  for (Eigen::Index j = 0; j < rows; ++j)
   {
-    for (Eigen::Index l = 0; l < n; ++l)
+    for (Eigen::Index l = 0; l < rows; ++l)
     {
       m.block(j * n, l * n, n, n) = v(j, l) * u;
     }
@@ -66,8 +67,14 @@ Eigen::MatrixXd tensor(const Eigen::MatrixXd& u, const Eigen::MatrixXd& v)
 
 PatchEnergies patchEnergies(int segments)
 {
-  const Gram g = gramMatrices(segments);
-  return {tensor(g.Second, g.Value), tensor(g.First, g.First), tensor(g.Value, g.Second),
-    tensor(g.Value, g.Value)};
+  return patchEnergies(segments, segments);
+}
+
+PatchEnergies patchEnergies(int segmentsU, int segmentsV)
+{
+  const Gram u = gramMatrices(segmentsU);
+  const Gram v = gramMatrices(segmentsV);
+  return {tensor(u.Second, v.Value), tensor(u.First, v.First), tensor(u.Value, v.Second),
+    tensor(u.Value, v.Value)};
 }
 } // namespace bsr

@@ -29,4 +29,6 @@ struct PatchEnergies
 };
 
 PatchEnergies patchEnergies(int segments);
+/// The same with different numbers of segments along u and v.
+PatchEnergies patchEnergies(int segmentsU, int segmentsV);
 } // namespace bsr
