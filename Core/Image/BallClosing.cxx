@@ -1,7 +1,7 @@
 #include "Image/BallClosing.h"
 
-#include "Image/DistanceTransform.h"
 #include "Common/MonitoredLoop.h"
+#include "Image/DistanceTransform.h"
 
 #include <cmath>
 

@@ -1,8 +1,8 @@
 #include "Image/ClosedDistance.h"
 
+#include "Common/MonitoredLoop.h"
 #include "Image/CrossingDistance.h"
 #include "Image/DigitalTopology.h"
-#include "Common/MonitoredLoop.h"
 #include "Image/ScalarTypes.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #include "Image/ClosingRadius.h"
 
+#include "Common/MonitoredLoop.h"
 #include "Image/CrossingDistance.h"
 #include "Image/DistanceTransform.h"
-#include "Common/MonitoredLoop.h"
 
 #include <algorithm>
 #include <cmath>

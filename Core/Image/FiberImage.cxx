@@ -1,7 +1,7 @@
 // The gray values of the fiber phantom.
 #include "Common/CounterRandom.h"
-#include "Image/FiberPhantom.h"
 #include "Common/MonitoredLoop.h"
+#include "Image/FiberPhantom.h"
 
 #include <algorithm>
 #include <cmath>

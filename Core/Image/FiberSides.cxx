@@ -1,9 +1,9 @@
 #include "Image/FiberSides.h"
 
+#include "Common/MonitoredLoop.h"
 #include "Image/DigitalTopology.h"
 #include "Image/DistanceTransform.h"
 #include "Image/Lumen.h"
-#include "Common/MonitoredLoop.h"
 #include "Image/SmoothWall.h"
 #include "Image/SurfaceVoxels.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "Common/MonitoredLoop.h"
 #include "Image/ImageView.h"
 #include "Image/LineEnvelope.h"
-#include "Common/MonitoredLoop.h"
 
 #include <vector>
 

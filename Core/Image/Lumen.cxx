@@ -1,9 +1,9 @@
 #include "Image/Lumen.h"
 
+#include "Common/MonitoredLoop.h"
 #include "Image/BallClosing.h"
 #include "Image/DigitalTopology.h"
 #include "Image/DistanceTransform.h"
-#include "Common/MonitoredLoop.h"
 #include "Image/Visibility.h"
 
 #include <cmath>

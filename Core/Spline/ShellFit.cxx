@@ -71,6 +71,10 @@ public:
       }
     }
     this->Watch.progress(0.9);
+    if (Status s = this->unfold(schedule.back()); !s)
+    {
+      return s;
+    }
     if (Status s = this->repair(schedule.back()); !s)
     {
       return s;
@@ -209,6 +213,73 @@ private:
       return scores.status();
     }
     return Status::ok();
+  }
+
+  /// A first shell with folds gets local fairing, then loses the data of the patches that stay
+  /// folded; where that does not do, all data count less. What is left is for the repair.
+  Status unfold(double lambda)
+  {
+    constexpr int Rounds = 9;
+    constexpr int Drop = 6;
+    constexpr double LeastDataWeight = 30.0;
+    this->Judge->look(this->Surface);
+    if (this->Options.RestShape || this->Judge->score() < ShellFaults::Severe)
+    {
+      return Status::ok();
+    }
+    const std::vector<FitPoint> points = this->Points;
+    const auto stiffness = this->Equations.Stiffness;
+    this->Repairing = true;
+    for (int round = 0; this->Judge->score() >= ShellFaults::Severe; ++round)
+    {
+      if (round % Rounds == Rounds - 1)
+      {
+        this->Repairing = false;
+        this->Points = points;
+        this->Equations.Stiffness = stiffness;
+        if (this->K <= LeastDataWeight)
+        {
+          return this->pass(lambda, 4.685);
+        }
+        this->K /= 3.0;
+        if (Status s = this->pass(lambda, 4.685); !s)
+        {
+          return s;
+        }
+        this->Repairing = true;
+      }
+      else
+      {
+        for (const Index f : this->Judge->BadPatches)
+        {
+          this->stiffen(f);
+        }
+        if (round % Rounds >= Drop)
+        {
+          this->dropData();
+        }
+        if (Status s = this->solve(lambda); !s)
+        {
+          return s;
+        }
+      }
+      this->Judge->look(this->Surface);
+    }
+    return Status::ok();
+  }
+
+  /// The points of bad patches lose their weight.
+  void dropData()
+  {
+    std::vector<char> bad(this->Net.patches(), 0);
+    for (const Index f : this->Judge->BadPatches)
+    {
+      bad[f] = 1;
+    }
+    for (FitPoint& p : this->Points)
+    {
+      p.Robust = bad[p.Patch] ? 0.0 : p.Robust;
+    }
   }
 
   /// Parameters stay; what helped least comes first, so that healthy data are touched least.
