@@ -104,6 +104,45 @@ TEST(BSplineG1Fit, ThreePortsAndTheirArrays)
   }
 }
 
+TEST(BSplineG1Fit, RationalPatchesAndTheirReport)
+{
+  vtkNew<vtkBSplineG1Fit> fit;
+  bsrtest::ErrorLog log(fit);
+  fit->SetInputData(0, points(10));
+  fit->SetInputData(1, layout());
+  fit->SetDataWeight(1e5);
+  fit->RationalOn();
+  for (const int optimizer : {vtkBSplineG1Fit::NO_WEIGHTS, vtkBSplineG1Fit::EVOLUTION_STRATEGY,
+         vtkBSplineG1Fit::DETERMINISTIC})
+  {
+    fit->SetOptimizer(optimizer);
+    fit->SetGenerations(20);
+    fit->Update();
+    EXPECT_TRUE(log.empty()) << log.text();
+    vtkFieldData* field = fit->GetOutput(0)->GetFieldData();
+    EXPECT_LE(field->GetArray("MaxNormalJump")->GetComponent(0, 0), 1e-6);
+    EXPECT_EQ(field->GetArray("FoldedPatches")->GetComponent(0, 0), 0.0);
+    EXPECT_TRUE(field->GetArray("WeightSeconds"));
+    EXPECT_EQ(
+      field->GetArray("Convergence") != nullptr, optimizer == vtkBSplineG1Fit::EVOLUTION_STRATEGY);
+    vtkTable* table = vtkTable::SafeDownCast(fit->GetOutputDataObject(2));
+    ASSERT_EQ(table->GetNumberOfRows(), 6);
+    for (vtkIdType i = 0; i < 6; ++i)
+    {
+      const auto value = [&](const char* name)
+      { return table->GetValueByName(i, name).ToDouble(); };
+      EXPECT_LE(value("Mean"), value("MeanBefore"));
+      EXPECT_LE(value("LeastWeight"), value("LargestWeight"));
+      EXPECT_EQ(value("SegmentsU"), 3.0);
+      if (optimizer == vtkBSplineG1Fit::NO_WEIGHTS)
+      {
+        EXPECT_EQ(value("LeastWeight"), 1.0);
+        EXPECT_EQ(value("LargestWeight"), 1.0);
+      }
+    }
+  }
+}
+
 TEST(BSplineG1Fit, BadInputIsOneErrorAndNoOutput)
 {
   const auto failure = [](vtkPolyData* p, vtkPolyData* q, const char* weights = "")
