@@ -116,6 +116,7 @@ private:
       mean += p.Variables / this->Options.Parents;
     }
     std::vector<Individual> children;
+    children.reserve(this->Options.Offspring);
     for (int i = 0; i < this->Options.Offspring; ++i)
     {
       children.push_back(this->feasible([&] { return this->descendant(mean); }));
