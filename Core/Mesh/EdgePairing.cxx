@@ -62,7 +62,9 @@ std::vector<std::array<Index, 2>> pairAtEdge(
   std::stable_sort(
     order.begin(), order.end(), [&](Index i, Index j) { return angle[i] < angle[j]; });
   std::vector<std::array<Index, 2>> pairs;
-  if (n % 2 == 0 && pairSolids(faces, order, pairs))
+  const bool fins =
+    std::any_of(faces.begin(), faces.end(), [](const EdgeFace& f) { return f.Loose; });
+  if (n % 2 == 0 && !fins && pairSolids(faces, order, pairs))
   {
     return pairs;
   }
@@ -74,13 +76,15 @@ std::vector<std::array<Index, 2>> pairAtEdge(
   };
   std::vector<Choice> choices;
   constexpr double against = 10.0; // faces of unlike orientation come last
+  constexpr double loose = 4.0;
   for (std::size_t i = 0; i < n && n <= 64; ++i)
   {
     for (std::size_t j = i + 1; j < n; ++j)
     {
       const double turn = std::abs(std::remainder(angle[i] - angle[j], 2.0 * M_PI));
-      choices.push_back(
-        {M_PI - turn + (faces[i].Forward == faces[j].Forward ? against : 0.0), i, j});
+      choices.push_back({M_PI - turn + (faces[i].Forward == faces[j].Forward ? against : 0.0) +
+                           loose * (faces[i].Loose + faces[j].Loose),
+        i, j});
     }
   }
   std::stable_sort(choices.begin(), choices.end(),

@@ -315,7 +315,8 @@ private:
     {
       this->mark(*k / 3, RepairCut);
       this->M.Twin[*k] = Open;
-      faces.push_back({*k, this->vertex(*k) == low, this->M.Points[this->apex(*k)]});
+      faces.push_back(
+        {*k, this->vertex(*k) == low, this->loose(*k), this->M.Points[this->apex(*k)]});
     }
     for (const auto& p : pairAtEdge(this->M.Points[low], this->M.Points[this->upper(*i)], faces))
     {
@@ -323,6 +324,13 @@ private:
       this->M.Twin[p[1]] = p[0];
       this->Paired[p[0]] = this->Paired[p[1]] = 1;
     }
+  }
+
+  /// Is another edge of the face at a boundary?
+  bool loose(Index h) const
+  {
+    return this->M.Twin[TriangleSurface::next(h)] == Open ||
+           this->M.Twin[TriangleSurface::prev(h)] == Open;
   }
 
   /// Orients faces alike and numbers components; false on a one-sided surface. Edges that were

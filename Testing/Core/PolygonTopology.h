@@ -157,12 +157,13 @@ private:
   bsr::UnionFind Body;
 };
 
+/// Euler characteristic / boundary loops of each.
 inline std::string text(const std::vector<ComponentTopology>& components)
 {
   std::ostringstream out;
   for (const ComponentTopology& c : components)
   {
-    out << " (chi " << c.Euler << ", loops " << c.Loops << ", faces " << c.Faces << ")";
+    out << ' ' << c.Euler << '/' << c.Loops;
   }
   return out.str();
 }

@@ -14,7 +14,6 @@
 namespace
 {
 using namespace bsr;
-using bsrtest::ComponentTopology;
 using bsrtest::PolygonTopology;
 
 struct Outcome
@@ -97,6 +96,7 @@ void printTable(const std::vector<Outcome>& outcomes)
   const auto column = [&](double Outcome::*member)
   {
     std::vector<double> values;
+    values.reserve(outcomes.size());
     for (const Outcome& o : outcomes)
     {
       values.push_back(o.*member);
