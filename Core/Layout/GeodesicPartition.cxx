@@ -1,0 +1,570 @@
+#include "Layout/GeodesicPartition.h"
+
+#include "Common/BoxTree.h"
+#include "Common/Parallel.h"
+#include "Layout/CutMesh.h"
+#include "Layout/NearestQuad.h"
+#include "Layout/SquareMap.h"
+#include "Mesh/BoundaryLoops.h"
+#include "Mesh/BuildSurface.h"
+#include "Mesh/TriangleTree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+namespace bsr
+{
+namespace
+{
+constexpr double EdgeShare = 0.14; ///< longest edge of the refined mesh, of a quad's mean side
+constexpr int Attempts = 5;        ///< orders of the sides that are tried
+constexpr double Margin = 0.04;    ///< paths keep this share of an edge away from its ends
+constexpr double Shore = 0.15;     ///< of a side's length: nearer to other sides it is slow
+
+double meanSide(const QuadMesh& quads)
+{
+  double sum = 0.0;
+  for (const auto& q : quads.Quads)
+  {
+    for (int k = 0; k < 4; ++k)
+    {
+      sum += (quads.Points[q[k]] - quads.Points[q[(k + 1) % 4]]).norm();
+    }
+  }
+  return sum / (4.0 * static_cast<double>(quads.Quads.size()));
+}
+
+/// Whether the quads' normals run against those of the mesh beneath them, by majority.
+bool opposed(const TriangleMesh& mesh, const QuadMesh& quads)
+{
+  const TriangleTree tree(mesh.Points, mesh.Triangles);
+  int votes = 0;
+  for (const auto& q : quads.Quads)
+  {
+    const Vec3 center =
+      0.25 * (quads.Points[q[0]] + quads.Points[q[1]] + quads.Points[q[2]] + quads.Points[q[3]]);
+    const Vec3 normal =
+      (quads.Points[q[2]] - quads.Points[q[0]]).cross(quads.Points[q[3]] - quads.Points[q[1]]);
+    votes += normal.dot(tree.normal(tree.nearest(center).Triangle)) < 0.0 ? 1 : -1;
+  }
+  return votes > 0;
+}
+
+/// Some triangles of the cut mesh as a mesh of their own.
+struct LocalMesh
+{
+  TriangleMesh Mesh;
+  std::vector<Index> Global; ///< vertex of the cut mesh
+  std::unordered_map<Index, Index> Local;
+
+  void add(const TriangleSurface& s, const std::vector<Index>& faces)
+  {
+    for (const Index f : faces)
+    {
+      std::array<Index, 3> t{};
+      const auto corners = s.corners(f);
+      for (int k = 0; k < 3; ++k)
+      {
+        const auto [at, fresh] =
+          this->Local.insert({corners[k], static_cast<Index>(this->Global.size())});
+        if (fresh)
+        {
+          this->Global.push_back(corners[k]);
+          this->Mesh.Points.push_back(s.Points[corners[k]]);
+        }
+        t[k] = at->second;
+      }
+      this->Mesh.Triangles.push_back(t);
+    }
+  }
+};
+
+/// A path in global vertices, points near free vertices moved onto them, loops cut out.
+std::vector<EdgePoint> snapped(const std::vector<EdgePoint>& path, const LocalMesh& local,
+  const std::vector<std::uint8_t>& shore)
+{
+  std::vector<EdgePoint> out;
+  for (std::size_t i = 0; i < path.size(); ++i)
+  {
+    EdgePoint p = path[i];
+    if (!p.isVertex())
+    {
+      const Index near = p.T < 0.5 ? p.A : p.B;
+      if (std::min(p.T, 1.0 - p.T) < 0.06 && !shore[near])
+      {
+        p = {near, near, 0.0};
+      }
+    }
+    p.A = local.Global[p.A];
+    p.B = local.Global[p.B];
+    const auto same = std::find_if(out.begin(), out.end(),
+      [&](const EdgePoint& q)
+      {
+        return p.isVertex() ? q.isVertex() && q.A == p.A
+                            : !q.isVertex() && std::minmax(q.A, q.B) == std::minmax(p.A, p.B);
+      });
+    out.erase(same, out.end());
+    out.push_back(p);
+  }
+  return out;
+}
+
+/// The geodesic of a side in the union of its quads; empty where it touches other sides.
+std::vector<EdgePoint> geodesicSide(const CutMesh& cut, const LayoutGraph& graph, Index edge)
+{
+  const Index h = graph.First[edge];
+  LocalMesh local;
+  local.add(cut.Surface, cut.Faces[h / 4]);
+  local.add(cut.Surface, cut.Faces[graph.Twin[h] / 4]);
+  const auto twin = halfEdgeTwins(local.Mesh);
+  if (!twin)
+  {
+    return {};
+  }
+  std::vector<std::uint8_t> shore(local.Global.size(), 0);
+  for (std::size_t x = 0; x < twin->size(); ++x)
+  {
+    if ((*twin)[x] < 0)
+    {
+      const auto& t = local.Mesh.Triangles[x / 3];
+      shore[t[x % 3]] = shore[t[(x + 1) % 3]] = 1;
+    }
+  }
+  const FastMarching march(local.Mesh, *twin);
+  const Index a = local.Local[cut.Sides[edge].front()];
+  const Index b = local.Local[cut.Sides[edge].back()];
+  std::vector<Index> rim;
+  for (std::size_t v = 0; v < shore.size(); ++v)
+  {
+    if (shore[v])
+    {
+      rim.push_back(static_cast<Index>(v));
+    }
+  }
+  const double width = Shore * (local.Mesh.Points[a] - local.Mesh.Points[b]).norm();
+  std::vector<double> slow = march.distances(rim);
+  for (double& x : slow)
+  {
+    const double near = std::max(0.0, 1.0 - x / width);
+    x = 1.0 + 5.0 * near * near;
+  }
+  auto path = march.descend(march.distances({b}, slow, -1), a);
+  if (path.empty())
+  {
+    return {};
+  }
+  march.straighten(path, 8, Margin);
+  for (std::size_t i = 1; i + 1 < path.size(); ++i)
+  {
+    if (path[i].isVertex() && shore[path[i].A])
+    {
+      return {};
+    }
+  }
+  return snapped(path, local, shore);
+}
+
+/// The sides' places on the square of a quad.
+SquareDisc discOf(const CutMesh& cut, const LayoutGraph& graph, Index quad, const LocalMesh& local)
+{
+  static const std::array<Vec2, 4> corner = {Vec2(0, 0), Vec2(1, 0), Vec2(1, 1), Vec2(0, 1)};
+  SquareDisc disc;
+  disc.Mesh = local.Mesh;
+  for (int k = 0; k < 4; ++k)
+  {
+    const Index edge = graph.Edge[4 * quad + k];
+    const auto& path = cut.Sides[edge];
+    // Arc length in the side's own direction, so that both neighbors see the same numbers.
+    std::vector<double> at(1, 0.0);
+    for (std::size_t i = 1; i < path.size(); ++i)
+    {
+      at.push_back(
+        at.back() + (cut.Surface.Points[path[i]] - cut.Surface.Points[path[i - 1]]).norm());
+    }
+    const bool along = graph.First[edge] == 4 * quad + k;
+    const Vec2& from = corner[along ? k : (k + 1) % 4];
+    const Vec2& to = corner[along ? (k + 1) % 4 : k];
+    for (std::size_t i = 0; i < path.size(); ++i)
+    {
+      const bool last = along ? i + 1 == path.size() : i == 0;
+      if (!last)
+      {
+        disc.Boundary.push_back(local.Local.at(path[i]));
+        disc.BoundaryUV.emplace_back(from + (at[i] / at.back()) * (to - from));
+      }
+    }
+  }
+  return disc;
+}
+
+/// Triangles with (u, v) at their corners, for nearest-point queries.
+class MappedTriangles
+{
+public:
+  void add(const LocalMesh& local, const std::vector<Vec2>& uv, Index quad)
+  {
+    for (const auto& t : local.Mesh.Triangles)
+    {
+      Item item;
+      for (int k = 0; k < 3; ++k)
+      {
+        item.P[k] = local.Mesh.Points[t[k]];
+        item.UV[k] = uv[t[k]];
+      }
+      item.Quad = quad;
+      this->Items.push_back(item);
+    }
+  }
+
+  void addUnmapped(const TriangleSurface& s, Index face)
+  {
+    Item item;
+    for (int k = 0; k < 3; ++k)
+    {
+      item.P[k] = s.Points[s.corners(face)[k]];
+      item.UV[k] = Vec2::Zero();
+    }
+    this->Items.push_back(item);
+  }
+
+  void build()
+  {
+    std::vector<Box> boxes(this->Items.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+    {
+      for (const Vec3& p : this->Items[i].P)
+      {
+        boxes[i].add(p);
+      }
+    }
+    this->Tree = BoxTree(boxes);
+  }
+
+  /// The nearest triangle that faces a way (zero: any); quad -1 where it belongs to none.
+  QuadHit find(const Vec3& p, const Vec3& facing) const
+  {
+    QuadHit hit;
+    double bound = hit.SquaredDistance;
+    Index best = -1;
+    Vec3 foot = Vec3::Zero();
+    this->Tree.nearest(p, bound,
+      [&](Index i)
+      {
+        const Item& t = this->Items[i];
+        if (facing.squaredNorm() > 0.0 &&
+            (t.P[1] - t.P[0]).cross(t.P[2] - t.P[0]).dot(facing) <= 0.0)
+        {
+          return;
+        }
+        const Vec3 q = nearestOnTriangle(p, t.P[0], t.P[1], t.P[2]);
+        const double d = (q - p).squaredNorm();
+        if (d < bound || (d == bound && i < best))
+        {
+          bound = d;
+          best = i;
+          foot = q;
+        }
+      });
+    if (best < 0)
+    {
+      return facing.squaredNorm() > 0.0 ? this->find(p, Vec3::Zero()) : hit;
+    }
+    const Item& t = this->Items[best];
+    hit.Quad = t.Quad;
+    hit.SquaredDistance = bound;
+    hit.UV = interpolate(t, foot);
+    return hit;
+  }
+
+private:
+  struct Item
+  {
+    std::array<Vec3, 3> P;
+    std::array<Vec2, 3> UV;
+    Index Quad = -1;
+  };
+
+  static Vec2 interpolate(const Item& t, const Vec3& p)
+  {
+    const Vec3 n = (t.P[1] - t.P[0]).cross(t.P[2] - t.P[0]);
+    const double all = n.squaredNorm();
+    if (!(all > 0.0))
+    {
+      return (t.UV[0] + t.UV[1] + t.UV[2]) / 3.0;
+    }
+    const double b = std::clamp((p - t.P[0]).cross(t.P[2] - t.P[0]).dot(n) / all, 0.0, 1.0);
+    const double c = std::clamp((t.P[1] - t.P[0]).cross(p - t.P[0]).dot(n) / all, 0.0, 1.0);
+    const Vec2 uv = t.UV[0] + b * (t.UV[1] - t.UV[0]) + c * (t.UV[2] - t.UV[0]);
+    return uv.cwiseMax(0.0).cwiseMin(1.0);
+  }
+
+  std::vector<Item> Items;
+  BoxTree Tree;
+};
+
+class Partitioner
+{
+public:
+  Partitioner(const std::vector<Vec3>& points, const TriangleMesh& mesh, const QuadMesh& quads,
+    const GeodesicOptions& options, Monitor& monitor)
+      : Points(points), Input(mesh), Quads(quads), Options(options), Watch(monitor)
+  {
+  }
+
+  Result<GeodesicPartition> run()
+  {
+    // The nearest quads serve where no region is found, and the checks are the same.
+    PartitionOptions simple;
+    simple.Facing = this->Options.Facing;
+    SubMonitor first(this->Watch, 0.0, 0.1);
+    auto nearest = partitionToQuads(this->Points, this->Quads, simple, first);
+    if (!nearest)
+    {
+      return nearest.status();
+    }
+    this->Out.Points = std::move(*nearest);
+    auto graph = LayoutGraph::build(this->Quads);
+    if (!graph)
+    {
+      return graph.status();
+    }
+    this->Graph = std::move(*graph);
+    for (const auto& step : {&Partitioner::cut, &Partitioner::straighten, &Partitioner::mapRegions})
+    {
+      if (Status s = (this->*step)(); !s)
+      {
+        return s;
+      }
+    }
+    this->locate();
+    this->describe();
+    this->Watch.progress(1.0);
+    return std::move(this->Out);
+  }
+
+private:
+  Status cut()
+  {
+    TriangleMesh mesh = this->Input;
+    mesh.Region.clear();
+    RepairReport repairs;
+    auto surfaces = buildSurfaces(mesh, 180.0, repairs, this->Watch);
+    if (!surfaces)
+    {
+      return surfaces.status();
+    }
+    if (opposed(surfaces->front().toMesh(), this->Quads))
+    {
+      for (auto& t : mesh.Triangles)
+      {
+        std::swap(t[1], t[2]);
+      }
+      surfaces = buildSurfaces(mesh, 180.0, repairs, this->Watch);
+      if (!surfaces)
+      {
+        return surfaces.status();
+      }
+    }
+    const auto base =
+      CutMesh::build(*surfaces, this->Quads, this->Graph, EdgeShare * meanSide(this->Quads));
+    if (!base)
+    {
+      return base.status();
+    }
+    std::vector<int> urgent(static_cast<std::size_t>(this->Graph.edges()), 0);
+    int least = std::numeric_limits<int>::max();
+    for (int attempt = 0; attempt < Attempts && least > 0; ++attempt)
+    {
+      if (this->Watch.cancelled())
+      {
+        return Status::cancelled();
+      }
+      CutMesh tried = *base;
+      const int failed = tried.laySides(this->Quads, this->Graph, urgent);
+      for (std::size_t h = 0; h < this->Graph.Edge.size(); ++h)
+      {
+        const Index e = this->Graph.Edge[h];
+        urgent[e] += tried.Sides[e].empty() ? 2 : (tried.Faces[h / 4].empty() ? 1 : 0);
+      }
+      if (failed < least)
+      {
+        least = failed;
+        this->Cut = std::move(tried);
+      }
+      this->Watch.progress(0.1 + 0.2 * (attempt + 1) / Attempts);
+    }
+    this->Out.FailedQuads = least;
+    return Status::ok();
+  }
+
+  Status straighten()
+  {
+    if (!this->Options.Straighten)
+    {
+      return Status::ok();
+    }
+    for (Index e = 0; e < this->Graph.edges(); ++e)
+    {
+      if (this->Watch.cancelled())
+      {
+        return Status::cancelled();
+      }
+      const Index h = this->Graph.First[e];
+      const Index t = this->Graph.Twin[h];
+      if (t < 0 || t / 4 == h / 4 || this->Cut.Faces[h / 4].empty() ||
+          this->Cut.Faces[t / 4].empty())
+      {
+        this->Out.RoughSides += t >= 0 ? 1 : 0;
+        continue;
+      }
+      const auto path = geodesicSide(this->Cut, this->Graph, e);
+      if (path.empty() || !this->Cut.replaceSide(this->Graph, e, path))
+      {
+        ++this->Out.RoughSides;
+      }
+      this->Watch.progress(0.3 + 0.3 * (e + 1) / this->Graph.edges());
+    }
+    return Status::ok();
+  }
+
+  Status mapRegions()
+  {
+    const auto n = static_cast<Index>(this->Quads.Quads.size());
+    std::vector<LocalMesh> local(this->Quads.Quads.size());
+    std::vector<std::vector<Vec2>> uv(local.size());
+    std::vector<int> folded(local.size(), 0);
+    constexpr Index Batch = 32;
+    for (Index begin = 0; begin < n; begin += Batch)
+    {
+      if (this->Watch.cancelled())
+      {
+        return Status::cancelled();
+      }
+      parallelFor(begin, std::min(n, begin + Batch), 1,
+        [&](std::int64_t first, std::int64_t last)
+        {
+          for (auto q = static_cast<Index>(first); q < last; ++q)
+          {
+            if (!this->Cut.Faces[q].empty())
+            {
+              local[q].add(this->Cut.Surface, this->Cut.Faces[q]);
+              const SquareDisc disc = discOf(this->Cut, this->Graph, q, local[q]);
+              uv[q] = squareMap(disc, this->Options.StretchRounds);
+              folded[q] = uv[q].empty() ? 0 : foldedTriangles(disc.Mesh, uv[q]);
+            }
+          }
+        });
+      this->Watch.progress(0.6 + 0.3 * std::min(n, begin + Batch) / n);
+    }
+    this->Out.Failed.assign(local.size(), 0);
+    this->Out.FailedQuads = 0;
+    for (Index q = 0; q < n; ++q)
+    {
+      if (uv[q].empty())
+      {
+        this->Out.Failed[q] = 1;
+        ++this->Out.FailedQuads;
+        for (const Index f : this->Cut.Faces[q])
+        {
+          this->Map.addUnmapped(this->Cut.Surface, f);
+        }
+        continue;
+      }
+      this->Out.FoldedTriangles += folded[q];
+      this->Map.add(local[q], uv[q], q);
+    }
+    for (Index f = 0; f < this->Cut.Surface.faces(); ++f)
+    {
+      if (this->Cut.Surface.Region[f] == CutMesh::Unknown)
+      {
+        this->Map.addUnmapped(this->Cut.Surface, f);
+      }
+    }
+    this->Map.build();
+    return Status::ok();
+  }
+
+  void locate()
+  {
+    Partition& p = this->Out.Points;
+    const auto n = static_cast<std::int64_t>(this->Points.size());
+    parallelFor(0, n, 1000,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        for (std::int64_t i = begin; i < end; ++i)
+        {
+          const Vec3 facing =
+            this->Options.Facing.empty() ? Vec3(Vec3::Zero()) : this->Options.Facing[i];
+          const QuadHit hit = this->Map.find(this->Points[i], facing);
+          p.Distance[i] = std::sqrt(hit.SquaredDistance);
+          if (hit.Quad >= 0)
+          {
+            p.QuadId[i] = hit.Quad;
+            p.UV[i] = hit.UV;
+          }
+        }
+      });
+    std::vector<char> used(this->Quads.Quads.size(), 0);
+    double sum = 0.0;
+    p.Max = 0.0;
+    for (std::size_t i = 0; i < p.QuadId.size(); ++i)
+    {
+      used[p.QuadId[i]] = 1;
+      sum += p.Distance[i] * p.Distance[i];
+      p.Max = std::max(p.Max, p.Distance[i]);
+    }
+    p.EmptyQuads = std::count(used.begin(), used.end(), 0);
+    p.RMS = std::sqrt(sum / static_cast<double>(n));
+  }
+
+  void describe()
+  {
+    std::vector<double> length(static_cast<std::size_t>(this->Graph.edges()), 0.0);
+    for (Index e = 0; e < this->Graph.edges(); ++e)
+    {
+      const Index h = this->Graph.First[e];
+      const Index t = this->Graph.Twin[h];
+      std::vector<Vec3> side;
+      for (const Index v : this->Cut.Sides[e])
+      {
+        side.push_back(this->Cut.Surface.Points[v]);
+        length[e] += side.size() > 1 ? (side.back() - side[side.size() - 2]).norm() : 0.0;
+      }
+      this->Out.Sides.push_back(std::move(side));
+      this->Out.SideEnds.push_back({this->Graph.from(h), this->Graph.to(h)});
+      this->Out.SideQuads.push_back({h / 4, t < 0 ? -1 : t / 4});
+    }
+    for (std::size_t q = 0; q < this->Quads.Quads.size(); ++q)
+    {
+      std::array<double, 4> l{};
+      for (std::size_t k = 0; k < 4; ++k)
+      {
+        l[k] = length[this->Graph.Edge[4 * q + k]];
+      }
+      const auto [least, most] = std::minmax_element(l.begin(), l.end());
+      if (*least > 0.0)
+      {
+        this->Out.Stretch = std::max(this->Out.Stretch, *most / *least);
+      }
+    }
+  }
+
+  const std::vector<Vec3>& Points;
+  const TriangleMesh& Input;
+  const QuadMesh& Quads;
+  const GeodesicOptions& Options;
+  Monitor& Watch;
+  LayoutGraph Graph;
+  CutMesh Cut;
+  MappedTriangles Map;
+  GeodesicPartition Out;
+};
+} // namespace
+
+Result<GeodesicPartition> partitionGeodesic(const std::vector<Vec3>& points,
+  const TriangleMesh& mesh, const QuadMesh& quads, const GeodesicOptions& options, Monitor& monitor)
+{
+  return Partitioner(points, mesh, quads, options, monitor).run();
+}
+} // namespace bsr
