@@ -2,8 +2,12 @@
 
 #include "Adapters/BSRMeshAdapter.h"
 #include "Adapters/BSRMonitor.h"
+#include "Layout/GeodesicPartition.h"
 #include "Layout/PartitionToQuads.h"
+#include "Spline/SideNetwork.h"
 
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
 #include <vtkDoubleArray.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
@@ -12,7 +16,9 @@
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkPointSet.h>
+#include <vtkPoints.h>
 #include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
 
 vtkStandardNewMacro(vtkPartitionToQuads);
 
@@ -72,37 +78,156 @@ void attach(const bsr::Partition& p, vtkPointSet* output)
   bsr::addField(output->GetFieldData(), "EmptyQuads", static_cast<double>(p.EmptyQuads));
 }
 
-bsr::Result<bsr::Partition> partition(
-  vtkPointSet* input, vtkPolyData* layout, bool matchNormals, bsr::Monitor& monitor)
+/// A polyline a side; cell arrays Side, Corners and SideQuads.
+void networkTo(const std::vector<std::vector<bsr::Vec3>>& sides,
+  const std::vector<std::array<bsr::Index, 2>>& ends,
+  const std::vector<std::array<bsr::Index, 2>>& quads, vtkPolyData* out)
 {
-  const auto points = bsr::pointsFrom(input->GetPoints());
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> lines;
+  vtkNew<vtkIntArray> number;
+  number->SetName("Side");
+  vtkNew<vtkIntArray> corners;
+  corners->SetName("Corners");
+  corners->SetNumberOfComponents(2);
+  vtkNew<vtkIntArray> neighbors;
+  neighbors->SetName("SideQuads");
+  neighbors->SetNumberOfComponents(2);
+  for (std::size_t s = 0; s < sides.size(); ++s)
+  {
+    if (sides[s].empty())
+    {
+      continue;
+    }
+    lines->InsertNextCell(static_cast<int>(sides[s].size()));
+    for (const bsr::Vec3& p : sides[s])
+    {
+      lines->InsertCellPoint(points->InsertNextPoint(p.data()));
+    }
+    number->InsertNextValue(static_cast<int>(s));
+    corners->InsertNextTypedTuple(ends[s].data());
+    neighbors->InsertNextTypedTuple(quads[s].data());
+  }
+  out->SetPoints(points);
+  out->SetLines(lines);
+  out->GetCellData()->AddArray(number);
+  out->GetCellData()->AddArray(corners);
+  out->GetCellData()->AddArray(neighbors);
+}
+
+/// What both methods take.
+struct Input
+{
+  std::vector<bsr::Vec3> Points;
+  bsr::QuadMesh Quads;
+  std::vector<bsr::Vec3> Facing;
+};
+
+bsr::Result<Input> inputFrom(vtkPointSet* input, vtkPolyData* layout, bool matchNormals)
+{
+  auto points = bsr::pointsFrom(input->GetPoints());
   if (!points)
   {
     return points.status();
   }
-  const auto quads = bsr::quadMeshFrom(layout);
+  auto quads = bsr::quadMeshFrom(layout);
   if (!quads)
   {
     return quads.status();
   }
-  bsr::PartitionOptions options;
+  Input in;
+  in.Points = std::move(*points);
+  in.Quads = std::move(*quads);
   if (matchNormals)
   {
-    options.Facing = facingFrom(input);
+    in.Facing = facingFrom(input);
   }
-  return bsr::partitionToQuads(*points, *quads, options, monitor);
+  return in;
+}
+
+bsr::Status nearestQuad(const Input& in, bsr::Monitor& monitor, vtkPointSet* output)
+{
+  bsr::PartitionOptions options;
+  options.Facing = in.Facing;
+  const auto result = bsr::partitionToQuads(in.Points, in.Quads, options, monitor);
+  if (result)
+  {
+    attach(*result, output);
+  }
+  return result.status();
+}
+
+bsr::Status geodesic(const Input& in, const bsr::TriangleMesh& mesh, int samples,
+  bsr::Monitor& monitor, vtkPointSet* output, vtkPolyData* network)
+{
+  bsr::GeodesicOptions options;
+  options.Facing = in.Facing;
+  const auto result = bsr::partitionGeodesic(in.Points, mesh, in.Quads, options, monitor);
+  if (!result)
+  {
+    return result.status();
+  }
+  attach(result->Points, output);
+  networkTo(bsr::regularizeSides(result->Sides, samples, mesh), result->SideEnds, result->SideQuads,
+    network);
+  for (vtkFieldData* field : {output->GetFieldData(), network->GetFieldData()})
+  {
+    bsr::addField(field, "FailedQuads", result->FailedQuads);
+    bsr::addField(field, "RoughSides", result->RoughSides);
+    bsr::addField(field, "FoldedTriangles", result->FoldedTriangles);
+    bsr::addField(field, "SideRatio", result->Stretch);
+  }
+  return bsr::Status::ok();
 }
 } // namespace
 
 vtkPartitionToQuads::vtkPartitionToQuads()
 {
-  this->SetNumberOfInputPorts(2);
+  this->SetNumberOfInputPorts(3);
+  this->SetNumberOfOutputPorts(2);
 }
 
 int vtkPartitionToQuads::FillInputPortInformation(int port, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkPointSet" : "vtkPolyData");
+  if (port == 2)
+  {
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
   return 1;
+}
+
+int vtkPartitionToQuads::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkPointSet" : "vtkPolyData");
+  return 1;
+}
+
+int vtkPartitionToQuads::RequestDataObject(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (!vtkPolyData::GetData(outputs, 1))
+  {
+    vtkNew<vtkPolyData> network;
+    outputs->GetInformationObject(1)->Set(vtkDataObject::DATA_OBJECT(), network);
+  }
+  vtkPointSet* input = vtkPointSet::GetData(inputs[0]);
+  vtkPointSet* output = vtkPointSet::GetData(outputs, 0);
+  if (input && (!output || !output->IsA(input->GetClassName())))
+  {
+    const auto fresh = vtk::TakeSmartPointer(input->NewInstance());
+    outputs->GetInformationObject(0)->Set(vtkDataObject::DATA_OBJECT(), fresh);
+  }
+  (void)request;
+  return 1;
+}
+
+vtkPolyData* vtkPartitionToQuads::MeshOf(vtkPointSet* input, vtkInformationVector** inputs)
+{
+  vtkPolyData* surface = vtkPolyData::GetData(inputs[2]);
+  surface = surface ? surface : vtkPolyData::SafeDownCast(input);
+  return surface && surface->GetNumberOfPolys() > 0 ? surface : nullptr;
 }
 
 int vtkPartitionToQuads::RequestData(
@@ -110,21 +235,43 @@ int vtkPartitionToQuads::RequestData(
 {
   vtkPointSet* input = vtkPointSet::GetData(inputs[0]);
   vtkPolyData* layout = vtkPolyData::GetData(inputs[1]);
-  vtkPointSet* output = vtkPointSet::GetData(outputs);
+  vtkPointSet* output = vtkPointSet::GetData(outputs, 0);
+  vtkPolyData* network = vtkPolyData::GetData(outputs, 1);
+  network->Initialize();
   if (!input || !layout)
   {
     vtkErrorMacro("Connect points to port 0 and a quad layout to port 1 (Quads).");
     return 0;
   }
-  bsr::AlgorithmMonitor monitor(this);
-  const auto result = partition(input, layout, this->MatchNormals, monitor);
-  if (!result)
+  const auto in = inputFrom(input, layout, this->MatchNormals);
+  bsr::Status status = in.status();
+  if (in)
+  {
+    bsr::AlgorithmMonitor monitor(this);
+    output->ShallowCopy(input);
+    vtkPolyData* surface = this->Method == GEODESIC ? this->MeshOf(input, inputs) : nullptr;
+    if (surface)
+    {
+      const auto mesh = bsr::triangleMeshFrom(surface);
+      status =
+        mesh ? geodesic(*in, *mesh, this->SamplesPerSide, monitor, output, network) : mesh.status();
+    }
+    else
+    {
+      if (this->Method == GEODESIC)
+      {
+        vtkWarningMacro("There are no triangles for geodesics: points took their nearest quad. "
+                        "Connect the mesh that the layout was made from to Surface.");
+      }
+      status = nearestQuad(*in, monitor, output);
+    }
+  }
+  if (!status)
   {
     output->Initialize();
-    return bsr::notDelivered(this, result.status());
+    network->Initialize();
+    return bsr::notDelivered(this, status);
   }
-  output->ShallowCopy(input);
-  attach(*result, output);
   return 1;
 }
 
@@ -132,5 +279,6 @@ void vtkPartitionToQuads::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Method: " << this->Method << "\n";
+  os << indent << "SamplesPerSide: " << this->SamplesPerSide << "\n";
   os << indent << "MatchNormals: " << this->MatchNormals << "\n";
 }

@@ -349,7 +349,7 @@ private:
     TriangleMesh mesh = this->Input;
     mesh.Region.clear();
     RepairReport repairs;
-    auto surfaces = buildSurfaces(mesh, 180.0, repairs, this->Watch);
+    auto surfaces = buildSurfaces(mesh, {}, repairs, this->Watch);
     if (!surfaces)
     {
       return surfaces.status();
@@ -360,7 +360,7 @@ private:
       {
         std::swap(t[1], t[2]);
       }
-      surfaces = buildSurfaces(mesh, 180.0, repairs, this->Watch);
+      surfaces = buildSurfaces(mesh, {}, repairs, this->Watch);
       if (!surfaces)
       {
         return surfaces.status();

@@ -127,3 +127,83 @@ TEST(PartitionToQuadsFilter, BadInputGivesOneErrorAndNoOutput)
   refused(vtkNew<vtkPolyData>(), plane(2), "no point");
   refused(onePoint<vtkPolyData>(NAN, 0, 0), plane(2), "NaN");
 }
+
+namespace
+{
+/// A sphere of triangles and the six quads of a cube around it.
+std::pair<vtkSmartPointer<vtkPolyData>, vtkSmartPointer<vtkPolyData>> sphereAndCube()
+{
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetThetaResolution(40);
+  sphere->SetPhiResolution(30);
+  sphere->SetRadius(1.0);
+  sphere->Update();
+  auto cube = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> corners;
+  vtkNew<vtkCellArray> quads;
+  for (int k = 0; k < 8; ++k)
+  {
+    const double s = 1.0 / std::sqrt(3.0);
+    corners->InsertNextPoint(k & 1 ? s : -s, k & 2 ? s : -s, k & 4 ? s : -s);
+  }
+  const vtkIdType q[6][4] = {
+    {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  for (const auto& c : q)
+  {
+    quads->InsertNextCell(4, c);
+  }
+  cube->SetPoints(corners);
+  cube->SetPolys(quads);
+  return {sphere->GetOutput(), cube};
+}
+} // namespace
+
+TEST(PartitionToQuadsFilter, GeodesicGivesANetworkOfEvenSides)
+{
+  const auto [sphere, cube] = sphereAndCube();
+  vtkNew<vtkPartitionToQuads> filter;
+  filter->SetMethod(vtkPartitionToQuads::GEODESIC);
+  filter->SetSamplesPerSide(9);
+  filter->SetInputData(0, sphere);
+  filter->SetInputData(1, cube);
+  ErrorLog log(filter);
+  filter->Update();
+  EXPECT_TRUE(log.empty()) << log.text();
+  vtkPointSet* out = filter->GetOutput();
+  EXPECT_EQ(out->GetNumberOfPoints(), sphere->GetNumberOfPoints());
+  for (const char* name : {"FailedQuads", "FoldedTriangles", "EmptyQuads"})
+  {
+    EXPECT_EQ(bsrtest::fieldValue(out, name), 0.0) << name;
+  }
+  EXPECT_LT(bsrtest::fieldValue(out, "QuadDistanceMax"), 1e-6);
+  auto* network = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(1));
+  ASSERT_TRUE(network);
+  EXPECT_EQ(network->GetNumberOfLines(), 12);
+  EXPECT_EQ(network->GetNumberOfPoints(), 12 * 9);
+}
+
+TEST(PartitionToQuadsFilter, GeodesicTakesPointsOverASurface)
+{
+  const auto [sphere, cube] = sphereAndCube();
+  vtkNew<vtkPartitionToQuads> filter;
+  filter->SetMethod(vtkPartitionToQuads::GEODESIC);
+  filter->SetInputData(0, onePoint<vtkUnstructuredGrid>(0.1, 0.2, 1.3));
+  filter->SetInputData(1, cube);
+  filter->SetInputData(2, sphere);
+  ErrorLog log(filter);
+  filter->Update();
+  EXPECT_TRUE(log.empty()) << log.text();
+  auto* out = vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
+  ASSERT_TRUE(out);
+  EXPECT_EQ(out->GetPointData()->GetArray("QuadId")->GetTuple1(0), 1.0);
+  // Without triangles the nearest quad is taken, and a warning says so.
+  vtkNew<vtkPartitionToQuads> bare;
+  bare->SetMethod(vtkPartitionToQuads::GEODESIC);
+  bare->SetInputData(0, onePoint<vtkPolyData>(0.1, 0.2, 1.3));
+  bare->SetInputData(1, cube);
+  ErrorLog warned(bare);
+  bare->Update();
+  ASSERT_EQ(warned.Warnings.size(), 1U);
+  EXPECT_NE(warned.Warnings[0].find("Surface"), std::string::npos);
+  EXPECT_EQ(bare->GetOutput()->GetPointData()->GetArray("QuadId")->GetTuple1(0), 1.0);
+}
