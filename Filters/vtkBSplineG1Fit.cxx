@@ -61,6 +61,16 @@ bsr::Result<bsr::PartitionedPoints> pointsOf(vtkPointSet* input, const std::stri
       p.Side.push_back(static_cast<std::uint8_t>(side->GetComponent(i, 0)));
     }
   }
+  if (vtkDataArray* normals = input->GetPointData()->GetNormals())
+  {
+    for (vtkIdType i = 0; i < n && normals->GetNumberOfComponents() == 3; ++i)
+    {
+      double v[3];
+      normals->GetTuple(i, v);
+      const bsr::Vec3 normal(v[0], v[1], v[2]);
+      p.Normals.push_back(normal.allFinite() ? normal : bsr::Vec3(bsr::Vec3::Zero()));
+    }
+  }
   if (!weightArray.empty())
   {
     auto weights = arrayOf(

@@ -121,7 +121,8 @@ Result<Mask> smoothLumen(const Mask& label, Monitor& monitor)
   Mask m(label.Extent, label.Spacing);
   for (std::int64_t i = 0; i < n; ++i)
   {
-    m.Data[i] = label.Data[i] >= static_cast<std::uint8_t>(VoidLabel::Lumen);
+    const auto l = static_cast<VoidLabel>(label.Data[i]);
+    m.Data[i] = l == VoidLabel::Lumen || l == VoidLabel::Mouth;
   }
   Mask rest(label.Extent, label.Spacing);
   for (std::int64_t i = 0; i < n; ++i)

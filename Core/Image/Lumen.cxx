@@ -23,6 +23,7 @@ constexpr double SmallestLumen = 3.5;  ///< voxels
 constexpr double RidgeShare = 0.4;     ///< of the widest: lower ridges are the wall's roughness
 constexpr double SmallestMouth = 0.6;  ///< of the lumen's radius
 constexpr double MouthDepth = 10.0;    ///< voxels
+constexpr double HoleMargin = 1.0;     ///< voxels: how far the lumen reaches into its holes
 
 /// For short steps between those with progress: passes on the wish to cancel only.
 class CancelOnly : public Monitor
@@ -200,6 +201,46 @@ Status grow(Mask& lumen, const Mask& wideSolid, const Mask& near, const Visibili
   return Status::ok();
 }
 
+/// The parts (6) of the lumen that the sealing ball does not come near to and that touch the
+/// outside.
+Result<Mask> findHoles(
+  const Mask& lumen, const Mask& solid, const Mask& wideSolid, Monitor& monitor)
+{
+  const auto wide =
+    maskWhere(lumen, [&](std::int64_t i) { return lumen.Data[i] != 0 && wideSolid.Data[i] == 0; });
+  const auto reached = dilated(wide, HoleMargin, monitor);
+  if (!reached)
+  {
+    return reached.status();
+  }
+  Mask narrow =
+    maskWhere(lumen, [&](std::int64_t i) { return lumen.Data[i] && !reached->Data[i]; });
+  const auto parts = connectedComponents(narrow.view(), true, Connectivity::Six, monitor);
+  if (!parts)
+  {
+    return parts.status();
+  }
+  const Int3& n = lumen.Extent.Size;
+  const Int3 stride{1, n[0], n[0] * n[1]};
+  const std::int64_t last = lumen.Extent.volume();
+  const auto outside = [&](std::int64_t i)
+  { return i >= 0 && i < last && !lumen.Data[i] && !solid.Data[i]; };
+  std::vector<char> open(parts->Voxels.size(), 0);
+  for (const LabeledRun& run : parts->Runs)
+  {
+    eachVoxel(run, n[0],
+      [&](std::int64_t i)
+      {
+        for (int s = 0; s < 6; ++s)
+        {
+          open[run.Label] |= outside(i + (s < 3 ? stride[s] : -stride[s - 3]));
+        }
+      });
+  }
+  keepComponents(narrow, *parts, [&](std::int64_t c) { return open[c] != 0; });
+  return narrow;
+}
+
 /// Calls f(voxel, neighbor, axis, direction) where a voxel of the lumen touches one of the outside.
 template <class F>
 void eachMouthFace(const Mask& lumen, const Mask& solid, const F& f)
@@ -366,6 +407,7 @@ Result<LumenResult> findLumen(
   result.PoreRadius =
     options.PoreRadius > 0.0 ? options.PoreRadius : std::max(small, 0.45 * result.LumenRadius);
   Mask mouth = maskWhere(near, [](std::int64_t) { return false; });
+  Mask hole = maskWhere(near, [](std::int64_t) { return false; });
   if (result.Found)
   {
     SubMonitor wider(monitor, 0.8, 0.9);
@@ -392,6 +434,12 @@ Result<LumenResult> findLumen(
       return before.status();
     }
     mouth = std::move(*before);
+    auto holes = findHoles(lumen, *solid, *wideSolid, growing);
+    if (!holes)
+    {
+      return holes.status();
+    }
+    hole = std::move(*holes);
   }
   if (monitor.cancelled())
   {
@@ -402,6 +450,7 @@ Result<LumenResult> findLumen(
   {
     const VoidLabel label = object.Data[i]                  ? VoidLabel::Object
                             : solid->Data[i]                ? VoidLabel::Sealed
+                            : hole.Data[i]                  ? VoidLabel::Hole
                             : result.Found && lumen.Data[i] ? VoidLabel::Lumen
                             : mouth.Data[i]                 ? VoidLabel::Mouth
                                                             : VoidLabel::Outside;

@@ -14,7 +14,8 @@ enum class VoidLabel : std::uint8_t
   Sealed = 1,  ///< pores, cracks and cavities of the object, narrower than about five voxels
   Outside = 2, ///< the void around the object, its concavities included
   Lumen = 3,   ///< the void within
-  Mouth = 4    ///< outside, close before an open end of the lumen
+  Mouth = 4,   ///< outside, close before an open end of the lumen
+  Hole = 5     ///< holes of the wall, as far as the void within reaches into them
 };
 
 struct LumenOptions
@@ -49,7 +50,7 @@ struct LumenResult
  * escape. Concavities of the outside do not pass (from the bottom of a wide dent some 40 % escape),
  * holes neither (they are few). Towards its open ends the lumen then grows through voxels that are
  * still walled in all around in some plane, but only where a ball of PoreRadius passes: not through
- * holes.
+ * holes. What of the lumen no such ball reaches and touches the outside is a hole's.
  *
  * Both masks cover the same extent, which should be some voxels wider than the object.
  */

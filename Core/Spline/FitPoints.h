@@ -13,10 +13,11 @@ struct FitPoint
   Index Patch = 0;
   double U = 0.5;
   double V = 0.5;
-  double Weight = 1.0; ///< the user's weight
-  double Robust = 1.0; ///< factor of the robust estimation, 0 for outliers
-  Index Source = -1;   ///< index of the input point
-  bool Fixed = false;  ///< rim samples: keep their parameters and their weight
+  Vec3 Normal = Vec3::Zero(); ///< of the surface the point comes from, either sign; 0: unknown
+  double Weight = 1.0;        ///< the user's weight
+  double Robust = 1.0;        ///< factor of the robust estimation, 0 for outliers
+  Index Source = -1;          ///< index of the input point
+  bool Fixed = false;         ///< rim samples: keep their parameters and their weight
 
   double weight() const { return this->Weight * this->Robust; }
 };

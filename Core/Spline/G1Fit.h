@@ -33,6 +33,7 @@ struct PartitionedPoints
   std::vector<Vec2> UV;
   std::vector<std::uint8_t> Side; ///< 0 outer, 1 inner, others ignored; empty: all outer
   std::vector<double> Weights;    ///< empty: all 1
+  std::vector<Vec3> Normals;      ///< of the surface they come from, of either sign; empty: unknown
 };
 
 struct G1FitOptions

@@ -210,7 +210,12 @@ std::vector<Residual> residuals(const NetEvaluator& evaluator, const std::vector
         const Vec3 e = points[i].Position - s.Point;
         const Vec3 n = s.normal();
         const double size = n.norm();
-        r[i] = {e.norm(), size > 0.0 ? e.dot(n) / size : e.norm()};
+        r[i] = {e.norm(), size > 0.0 ? e.dot(n) / size : e.norm(), 1.0};
+        const double known = points[i].Normal.norm() * size;
+        if (known > 0.0)
+        {
+          r[i].Cosine = std::abs(points[i].Normal.dot(n)) / known;
+        }
       }
     });
   return r;

@@ -33,6 +33,7 @@ struct Residual
 {
   double Distance = 0.0;
   double Normal = 0.0; ///< positive where the point lies outside
+  double Cosine = 1.0; ///< of the angle between the point's normal and the surface's, either sign
 };
 std::vector<Residual> residuals(
   const PatchNet& net, const NetPoints& surface, const std::vector<FitPoint>& points);

@@ -64,10 +64,11 @@ Status checkPoints(const PartitionedPoints& points, const QuadMesh& quads)
   }
   if (points.QuadId.size() != n || points.UV.size() != n ||
       (!points.Side.empty() && points.Side.size() != n) ||
-      (!points.Weights.empty() && points.Weights.size() != n))
+      (!points.Weights.empty() && points.Weights.size() != n) ||
+      (!points.Normals.empty() && points.Normals.size() != n))
   {
     return Status::invalidInput(
-      "QuadId, UV, Side or the weights do not have one value a point; apply "
+      "QuadId, UV, Side, Normals or the weights do not have one value a point; apply "
       "PartitionToQuads to these points.");
   }
   const auto quadCount = static_cast<Index>(quads.Quads.size());
@@ -119,6 +120,7 @@ std::vector<FitPoint> selectPoints(
     p.U = std::clamp(points.UV[i][0], 0.0, 1.0);
     p.V = std::clamp(points.UV[i][1], 0.0, 1.0);
     p.Weight = points.Weights.empty() ? 1.0 : points.Weights[i];
+    p.Normal = points.Normals.empty() ? Vec3(Vec3::Zero()) : points.Normals[i];
     p.Source = static_cast<Index>(i);
     p.Patch = cut.NewId[points.QuadId[i]];
     if (p.Patch >= 0)

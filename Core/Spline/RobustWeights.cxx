@@ -5,6 +5,12 @@
 
 namespace bsr
 {
+namespace
+{
+constexpr double Across = 0.25; ///< cosine below which a point is another surface's
+constexpr double Along = 0.5;   ///< and above which nothing speaks against it
+} // namespace
+
 double robustScale(const std::vector<FitPoint>& points, const std::vector<Residual>& r)
 {
   std::vector<double> size;
@@ -36,6 +42,7 @@ void setRobustWeights(
     }
     const double x = sigma > 0.0 ? r[i].Distance / (c * sigma) : 0.0;
     points[i].Robust = x < 1.0 ? (1.0 - x * x) * (1.0 - x * x) : 0.0;
+    points[i].Robust *= std::clamp((r[i].Cosine - Across) / (Along - Across), 0.0, 1.0);
   }
 }
 } // namespace bsr

@@ -13,13 +13,14 @@ using namespace bsr;
 
 namespace
 {
-/// A tube along x: outer radius 12, inner 8, from x = 10 to 70, with a hole of radius 3 through the
-/// wall and, where `closed`, bottoms.
+/// A tube along x: outer radius 12, inner 8, from x = 10 to 70, with a hole through the wall
+/// and, where `closed`, bottoms.
 struct Tube
 {
   Int3 Dims{80, 40, 40};
   Double3 Spacing{1.0, 1.0, 1.0};
   bool Closed = false;
+  double HoleRadius = 3.0;
 
   double r(const Int3& p) const
   {
@@ -32,7 +33,7 @@ struct Tube
   {
     const double x = static_cast<double>(p[0]) - 40.0;
     const double z = (static_cast<double>(p[2]) - 19.5) * this->Spacing[2];
-    const bool hole = p[1] > this->Dims[1] / 2 && std::hypot(x, z) <= 3.0;
+    const bool hole = p[1] > this->Dims[1] / 2 && std::hypot(x, z) <= this->HoleRadius;
     const bool lumen = this->r(p) < 8.0 && !(this->Closed && (p[0] < 16 || p[0] > 64));
     return this->filled(p) && !lumen && !hole;
   }
@@ -141,6 +142,37 @@ TEST(Lumen, TellsTheLumenFromTheOutsideAndFindsBothEnds)
       }
     });
   EXPECT_EQ(wrong, 0);
+}
+
+TEST(Lumen, AWideHoleIsNoPartOfIt)
+{
+  Tube tube;
+  tube.HoleRadius = 5.0; // wider than every pore that is sealed at once
+  Monitor monitor;
+  const auto near = bsrtest::makeVolume<std::uint8_t>(tube.Dims, tube.Spacing,
+    [&](const Int3& p) { return tube.r(p) <= 15.0 && p[0] >= 7 && p[0] <= 73 ? 1 : 0; });
+  LumenOptions options;
+  options.PoreRadius = 6.0;
+  const auto result = findLumen(maskOf(tube), near, options, monitor);
+  ASSERT_TRUE(result) << result.status().message();
+  ASSERT_TRUE(result->Found);
+  const auto label = result->Label.view();
+  int hole = 0;
+  for (std::int64_t k = 0; k < 40; ++k)
+  {
+    for (std::int64_t i = 20; i < 60; ++i)
+    {
+      for (std::int64_t j = 0; j < 40; ++j)
+      {
+        const Int3 p{i, j, k};
+        const auto l = static_cast<VoidLabel>(label(i, j, k));
+        hole += l == VoidLabel::Hole;
+        EXPECT_FALSE(l == VoidLabel::Lumen && tube.r(p) > 10.0) << i << " " << j << " " << k;
+        EXPECT_FALSE(l == VoidLabel::Hole && tube.r(p) < 6.0) << i << " " << j << " " << k;
+      }
+    }
+  }
+  EXPECT_GT(hole, 50);
 }
 
 TEST(Lumen, ClosedEndsAreNoMouths)

@@ -181,6 +181,29 @@ TEST(G1Fit, RobustWeightsDropDebris)
   EXPECT_GE(without, 3.0 * with);
 }
 
+TEST(G1Fit, NormalsTellTheWallsOfHoles)
+{
+  // All points of a few quads lie on the side walls of deep holes: only their normals tell.
+  const QuadMesh m = meshes::sphere(2);
+  PartitionedPoints p = sample(m, 12, toSphere, 0.002);
+  std::mt19937 random(7);
+  for (std::size_t i = 0; i < p.Points.size(); ++i)
+  {
+    const Vec3 out = p.Points[i].normalized();
+    p.Normals.push_back(out);
+    if (p.QuadId[i] % 16 == 0)
+    {
+      p.Points[i] *= 1.0 - 0.15 * (random() / 4294967296.0);
+      p.Normals.back() = out.unitOrthogonal();
+    }
+  }
+  const double with = deviation(fitted(p, m, {}).Model, toSphere, Shell::Outer).first;
+  p.Normals.clear();
+  const double without = deviation(fitted(p, m, {}).Model, toSphere, Shell::Outer).first;
+  EXPECT_LE(with, 0.004);
+  EXPECT_GE(without, 2.0 * with);
+}
+
 TEST(G1Fit, HollowTubeWithOpenEnds)
 {
   const QuadMesh m = cappedTube(8);
@@ -356,6 +379,9 @@ TEST(G1Fit, BadInputIsOneClearError)
   p = good;
   p.UV.pop_back();
   EXPECT_NE(failure(p, m).find("PartitionToQuads"), std::string::npos);
+  p = good;
+  p.Normals.assign(3, Vec3::UnitX());
+  EXPECT_NE(failure(p, m).find("Normals"), std::string::npos);
   p = good;
   p.Points[0][1] = std::nan("");
   EXPECT_NE(failure(p, m).find("NaN"), std::string::npos);
