@@ -108,7 +108,8 @@ public:
   ///@}
 
   ///@{
-  /// AUTOMATIC (default) opens the ends that `EndRegion` marks; KEEP_CLOSED fits all quads.
+  /// AUTOMATIC (default) opens the ends that `EndRegion` marks or, without that array, those that
+  /// the outer points do not cover; KEEP_CLOSED fits all quads.
   vtkSetClampMacro(OpenEnds, int, AUTOMATIC, KEEP_CLOSED);
   vtkGetMacro(OpenEnds, int);
   ///@}

@@ -1,5 +1,6 @@
 #include "Spline/G1Fit.h"
 
+#include "Spline/CoverageEnds.h"
 #include "Spline/FoldCheck.h"
 #include "Spline/LayoutEnds.h"
 #include "Spline/ModelBuilder.h"
@@ -395,13 +396,23 @@ double enclosedVolume(const QuadMesh& quads)
   return volume;
 }
 
+/// Two shells are to be fitted to ends that nobody has marked.
+bool mustFindEnds(const PartitionedPoints& points, const QuadMesh& quads, const G1FitOptions& o)
+{
+  const auto inner = std::count(points.Side.begin(), points.Side.end(), std::uint8_t{1});
+  return o.Ends == OpenEnds::Automatic && quads.Region.empty() &&
+         inner >= 4 * static_cast<std::ptrdiff_t>(quads.Quads.size());
+}
+
 /// Fits; a body of one shell only is fitted again with closed ends, for it would have no walls
 /// there.
 Result<G1FitResult> fitBody(
   const PartitionedPoints& points, const QuadMesh& quads, G1FitOptions options, Monitor& monitor)
 {
   SubMonitor first(monitor, 0.0, 0.6);
-  auto fit = Fitter(points, quads, options, first).run();
+  const bool find = mustFindEnds(points, quads, options) && checkPoints(points, quads);
+  const QuadMesh layout = find ? markOpenEnds(points, quads) : quads;
+  auto fit = Fitter(points, layout, options, first).run();
   if (!fit || fit->OpenEndCount == 0 || fit->Shells.size() > 1)
   {
     return fit;

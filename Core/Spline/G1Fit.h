@@ -21,7 +21,7 @@ enum class Continuity
 
 enum class OpenEnds
 {
-  Automatic, ///< quads with EndRegion > 0 are removed
+  Automatic, ///< quads with EndRegion > 0 are removed; without that array see CoverageEnds.h
   KeepClosed
 };
 

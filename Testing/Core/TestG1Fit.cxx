@@ -1,10 +1,13 @@
 #include "FitTesting.h"
 
+#include "Spline/CoverageEnds.h"
 #include "Spline/ModelCheck.h"
 
 #include <gtest/gtest.h>
 
 #include <tbb/global_control.h>
+
+#include <utility>
 
 using namespace bsr;
 using namespace fits;
@@ -245,6 +248,64 @@ TEST(G1Fit, HollowTubeWithOpenEnds)
   G1FitOptions closed;
   closed.Ends = OpenEnds::KeepClosed;
   EXPECT_EQ(fitted(p, m, closed).OpenEndCount, 0);
+}
+
+TEST(G1Fit, EndsThatNobodyMarkedAreFoundByCoverage)
+{
+  QuadMesh m = cappedTube(8);
+  const std::vector<Index> caps = std::exchange(m.Region, {});
+  const auto outer = [](const Vec3& x) { return toTube(x, 1.0); };
+  const auto inner = [](const Vec3& x) { return toTube(x, 0.7); };
+  PartitionedPoints p = sample(m, 10, outer, 0.0, 0);
+  append(p, sample(m, 10, inner, 0.0, 1));
+  // Holes in the wall: single quads and two neighbors without points are no ends.
+  const auto hole = [](Index q) { return q == 27 || q == 28 || q == 45; };
+  PartitionedPoints open = p;
+  for (std::size_t i = 0; i < p.Points.size(); ++i)
+  {
+    const Index q = p.QuadId[i];
+    open.Side[i] = caps[q] > 0 || hole(q) ? 255 : p.Side[i];
+    p.Side[i] = hole(q) || (p.Side[i] == 1 && caps[q] > 0) ? 255 : p.Side[i];
+  }
+  const G1FitResult r = fitted(open, m, {});
+  EXPECT_EQ(r.OpenEndCount, 2);
+  EXPECT_EQ(r.Shells.size(), 2u);
+  EXPECT_EQ(r.Model.Patches.size(), 64u + 64u + 16u);
+  EXPECT_EQ(r.FoldedPatches, 0);
+  EXPECT_TRUE(checkModel(r.Model));
+  EXPECT_LE(deviation(r.Model, outer, Shell::Outer).second, 0.03);
+  // Caps that have outer points are closed ends; so is an end that a layout marks as none.
+  EXPECT_EQ(markOpenEnds(p, m).Region.size(), 0u);
+  m.Region.assign(m.Quads.size(), 0);
+  G1FitOptions o;
+  o.DataWeight = 100;
+  EXPECT_EQ(fitted(open, m, o).OpenEndCount, 0);
+}
+
+TEST(G1Fit, RimsOfFoundEndsFollowThePoints)
+{
+  // The wall ends a third of a quad before the quads do.
+  QuadMesh m = cappedTube(8);
+  const std::vector<Index> caps = std::exchange(m.Region, {});
+  const auto outer = [](const Vec3& x) { return toTube(x, 1.0); };
+  PartitionedPoints p = sample(m, 12, outer, 0.0, 0);
+  for (std::size_t i = 0; i < p.Points.size(); ++i)
+  {
+    p.Side[i] = caps[p.QuadId[i]] > 0 || p.Points[i][0] > 3.83 ? 255 : 0;
+  }
+  const QuadMesh marked = markOpenEnds(p, m);
+  ASSERT_EQ(marked.Region.size(), m.Quads.size());
+  double low = 4.0;
+  for (std::size_t v = 0; v < m.Points.size(); ++v)
+  {
+    const Vec3& x = marked.Points[v];
+    if (std::abs(m.Points[v][0] - 4.0) < 1e-9 && std::hypot(x[1], x[2]) > 0.9)
+    {
+      low = std::min(low, x[0]);
+      EXPECT_NEAR(x[0], 3.8, 0.06);
+    }
+  }
+  EXPECT_LT(low, 3.9);
 }
 
 TEST(G1Fit, ShellsThatWouldCrossAreKeptApart)
