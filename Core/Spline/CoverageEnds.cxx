@@ -3,6 +3,7 @@
 #include "Spline/LayoutEnds.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -10,8 +11,9 @@ namespace bsr
 {
 namespace
 {
-constexpr double Uncovered = 0.45;      ///< of the median density
-constexpr double Facing = 0.7;          ///< cosine to the end's direction: still the end's face
+constexpr double Uncovered = 0.45; ///< of the median density
+/// Cosines to the end's direction: still the end's face. The first that gives a sound end counts.
+constexpr std::array<double, 4> Facing{0.7, 0.6, 0.8, 0.5};
 constexpr double LeastShare = 0.35;     ///< uncovered area of an end
 constexpr double LargestEnd = 0.3;      ///< of the layout's area
 constexpr double TurnedAway = 0.42;     ///< mean cosine of the quads around an end
@@ -153,7 +155,7 @@ private:
   }
 
   /// The end around a group of uncovered quads, the neighbors that face its way included.
-  EndCandidate widened(const std::vector<Index>& seed) const
+  EndCandidate widened(const std::vector<Index>& seed, double facing) const
   {
     EndCandidate c;
     c.Faces = seed;
@@ -161,7 +163,7 @@ private:
     {
       c.Direction = this->directionOf(c.Faces);
       c.Faces =
-        this->joined(seed, [&](Index f) { return this->Normal[f].dot(c.Direction) > Facing; });
+        this->joined(seed, [&](Index f) { return this->Normal[f].dot(c.Direction) > facing; });
     }
     this->tidy(c.Faces);
     c.Uncovered = this->emptyArea(c.Faces);
@@ -271,6 +273,17 @@ private:
            area <= LargestEnd * this->Total && this->turn(c) <= TurnedAway;
   }
 
+  /// A disc whose removal leaves a sound surface.
+  bool isSound(const EndCandidate& c) const
+  {
+    std::vector<Index> region(this->Complex.faces(), 0);
+    for (const Index f : c.Faces)
+    {
+      region[f] = 1;
+    }
+    return cutEnds(this->Quads, region).Ends == 1;
+  }
+
   std::vector<EndCandidate> candidates() const
   {
     std::vector<EndCandidate> found;
@@ -286,10 +299,14 @@ private:
       {
         used[g] = 1;
       }
-      EndCandidate c = this->widened(seed);
-      if (this->isEnd(c))
+      for (const double facing : Facing)
       {
-        found.push_back(std::move(c));
+        EndCandidate c = this->widened(seed, facing);
+        if (this->isEnd(c) && this->isSound(c))
+        {
+          found.push_back(std::move(c));
+          break;
+        }
       }
     }
     std::stable_sort(found.begin(), found.end(),
