@@ -1,30 +1,12 @@
 #pragma once
 
-#include "Layout/MorseGradient.h"
+#include "Layout/MorseCut.h"
 #include "Layout/QuadGraph.h"
 
 #include <string>
 
 namespace bsr
 {
-/// What a vertex of a partitioned surface is for the function.
-enum class CriticalPoint : std::uint8_t
-{
-  Regular = 0,
-  Minimum = 1,
-  Saddle = 2,
-  Maximum = 3
-};
-
-/// A triangle surface cut along the paths of a Morse-Smale complex: each triangle is in one cell.
-struct PartitionedSurface
-{
-  TriangleMesh Mesh;
-  std::vector<Index> Cell;             ///< per triangle, from 0
-  std::vector<double> Eigenfunction;   ///< per point
-  std::vector<CriticalPoint> Critical; ///< per point
-};
-
 /// The cells of a discrete gradient.
 struct MorseCells
 {

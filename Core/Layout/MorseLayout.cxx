@@ -19,7 +19,6 @@ struct Candidate
   double Eigenvalue = 0.0;
   std::size_t Cancelled = 0;
   int Subdivisions = 0;
-  bool Evened = false;
   MorseCells Cells;
   LayoutDraft Draft; ///< no quads: not valid
   double Cost = std::numeric_limits<double>::infinity();
@@ -36,18 +35,12 @@ public:
   {
   }
 
-  /// Layouts of some functions, in parallel; those of too many cells also with more cancelled.
-  void try_(const std::vector<Eigenfunction>& functions, bool count)
+  /// Layouts of some functions; those of too many cells also with more cancelled.
+  Status take(const std::vector<Eigenfunction>& functions, bool count, Monitor& monitor)
   {
     std::vector<std::vector<Candidate>> found(functions.size());
-    parallelFor(0, static_cast<std::int64_t>(functions.size()), 1,
-      [&](std::int64_t first, std::int64_t last)
-      {
-        for (std::int64_t i = first; i < last; ++i)
-        {
-          found[i] = this->layouts(functions[i], count);
-        }
-      });
+    const Status status = inGroups(functions.size(), monitor,
+      [&](std::size_t i) { found[i] = this->layouts(functions[i], count); });
     for (auto& list : found)
     {
       for (Candidate& c : list)
@@ -55,6 +48,7 @@ public:
         this->Found.push_back(std::move(c));
       }
     }
+    return status;
   }
 
   /// Relaxes the candidates nearest to the number asked for; the best one first.
@@ -69,23 +63,40 @@ public:
     std::stable_sort(this->Found.begin(), this->Found.end(),
       [&](const Candidate& a, const Candidate& b) { return miss(a) < miss(b); });
     this->Found.resize(std::min(most, this->Found.size()));
-    const auto n = static_cast<std::int64_t>(this->Found.size());
-    parallelFor(0, n, 1,
-      [&](std::int64_t first, std::int64_t last)
-      {
-        for (std::int64_t i = first; i < last; ++i)
-        {
-          this->judge(this->Found[i]);
-        }
-      });
+    const Status status =
+      inGroups(this->Found.size(), monitor, [&](std::size_t i) { this->judge(this->Found[i]); });
     std::stable_sort(this->Found.begin(), this->Found.end(),
       [](const Candidate& a, const Candidate& b) { return a.Cost < b.Cost; });
-    return monitor.cancelled() ? Status::cancelled() : Status::ok();
+    return status;
   }
 
   std::vector<Candidate> Found;
 
 private:
+  /// work(i) for each i, some at a time in parallel, so that the monitor is asked between.
+  template <class Work>
+  static Status inGroups(std::size_t count, Monitor& monitor, const Work& work)
+  {
+    constexpr std::size_t group = 4;
+    for (std::size_t first = 0; first < count; first += group)
+    {
+      if (monitor.cancelled())
+      {
+        return Status::cancelled();
+      }
+      parallelFor(static_cast<std::int64_t>(first),
+        static_cast<std::int64_t>(std::min(count, first + group)), 1,
+        [&](std::int64_t begin, std::int64_t end)
+        {
+          for (std::int64_t i = begin; i < end; ++i)
+          {
+            work(static_cast<std::size_t>(i));
+          }
+        });
+    }
+    return Status::ok();
+  }
+
   std::vector<Candidate> layouts(const Eigenfunction& function, bool count) const
   {
     const auto [low, high] = std::minmax_element(function.Values.begin(), function.Values.end());
@@ -168,7 +179,7 @@ private:
 Status searchSpectrum(
   LaplaceSpectrum& spectrum, const MorseOptions& options, Search& search, Monitor& monitor)
 {
-  constexpr int batch = 8;
+  constexpr int batch = 12;
   double number = std::max(2.0, options.NumberOfQuads / 1.5);
   for (int round = 0; round < 4; ++round)
   {
@@ -177,13 +188,16 @@ Status searchSpectrum(
       return Status::cancelled();
     }
     monitor.progress(round / 5.0);
-    const auto functions = spectrum.near(spectrum.weyl(number), batch);
+    const auto functions = spectrum.near(spectrum.weyl(number), batch, monitor);
     if (!functions)
     {
       return functions.status();
     }
     const std::size_t before = search.Found.size();
-    search.try_(*functions, true);
+    if (Status status = search.take(*functions, true, monitor); !status)
+    {
+      return status;
+    }
     std::vector<double> ratio;
     for (std::size_t i = before; i < search.Found.size(); ++i)
     {
@@ -249,13 +263,16 @@ Result<MorseLayout> morseLayout(const TriangleSurface& s, const ReferenceSurface
     {
       return function.status();
     }
-    search.try_({*function}, false);
+    if (Status status = search.take({*function}, false, monitor); !status)
+    {
+      return status;
+    }
   }
   else if (Status status = searchSpectrum(spectrum, options, search, searching); !status)
   {
     return status;
   }
-  if (Status status = search.finish(12, monitor); !status)
+  if (Status status = search.finish(20, monitor); !status)
   {
     return status;
   }

@@ -2,6 +2,8 @@
 
 #include "Layout/LayoutDraft.h"
 
+#include <map>
+
 namespace bsr
 {
 /**
@@ -45,6 +47,11 @@ public:
   /// itself.
   std::vector<Index> splitChord(Index h, Index& vertices);
 
+  /// The two ends of an edge, smaller one first.
+  using Pair = std::pair<Index, Index>;
+  static Pair pairOf(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
+  /// The edges of each pair of vertices that has any, by one half-edge each.
+  std::map<Pair, std::vector<Index>> edges() const;
   /// Pairs of vertices that share more than one edge: for each a half-edge of the surplus.
   std::vector<Index> repeatedEdges() const;
 };

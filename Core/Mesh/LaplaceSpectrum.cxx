@@ -11,6 +11,14 @@
 
 namespace bsr
 {
+namespace
+{
+/// Leaves the iteration of Spectra, which knows no other way out.
+struct Stopped
+{
+};
+} // namespace
+
 /// The symmetric matrix mass^-1/2 stiffness mass^-1/2 and its factorization at a shift, in the form
 /// Spectra asks for.
 struct LaplaceSpectrum::Factor
@@ -22,6 +30,7 @@ struct LaplaceSpectrum::Factor
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> Cholesky;
   double Shift = std::nan("");
   bool Sound = false;
+  Monitor* Watch = nullptr; ///< asked before each solve
 
   Eigen::Index rows() const { return this->Matrix.rows(); } // NOLINT: Spectra's name
   Eigen::Index cols() const { return this->Matrix.cols(); } // NOLINT: Spectra's name
@@ -42,6 +51,10 @@ struct LaplaceSpectrum::Factor
   }
   void perform_op(const double* x, double* y) const // NOLINT: Spectra's name
   {
+    if (this->Watch && this->Watch->cancelled())
+    {
+      throw Stopped();
+    }
     const Eigen::Map<const Eigen::VectorXd> in(x, this->rows());
     Eigen::Map<Eigen::VectorXd> out(y, this->rows());
     out = this->Cholesky.solve(in);
@@ -99,7 +112,7 @@ Index LaplaceSpectrum::countBelow(double lambda)
   return static_cast<Index>((d.array() < 0.0).count());
 }
 
-Result<std::vector<Eigenfunction>> LaplaceSpectrum::near(double lambda, int count)
+Result<std::vector<Eigenfunction>> LaplaceSpectrum::near(double lambda, int count, Monitor& monitor)
 {
   const Index n = this->size();
   const int wanted = std::min<int>(count, n - 2);
@@ -118,6 +131,7 @@ Result<std::vector<Eigenfunction>> LaplaceSpectrum::near(double lambda, int coun
     return Status::failed("The Laplacian of the surface could not be factorized; remesh it first.");
   }
   std::vector<Eigenfunction> found;
+  this->Solver->Watch = &monitor;
   try
   {
     const int space = std::min<int>(n, std::max(2 * wanted + 10, 24));
@@ -148,6 +162,10 @@ Result<std::vector<Eigenfunction>> LaplaceSpectrum::near(double lambda, int coun
       }
       found.push_back(std::move(e));
     }
+  }
+  catch (const Stopped&)
+  {
+    return Status::cancelled();
   }
   catch (const std::exception&)
   {
@@ -189,7 +207,7 @@ Result<Eigenfunction> LaplaceSpectrum::at(int number, Monitor& monitor)
   }
   for (int count : {12, 30})
   {
-    auto found = this->near(lambda, count);
+    auto found = this->near(lambda, count, monitor);
     if (!found)
     {
       return found.status();

@@ -39,7 +39,7 @@ public:
   /// Number of eigenvalues below `lambda`; -1 if the factorization fails.
   Index countBelow(double lambda);
   /// The `count` eigenfunctions whose eigenvalues are nearest to `lambda`, in rising order.
-  Result<std::vector<Eigenfunction>> near(double lambda, int count);
+  Result<std::vector<Eigenfunction>> near(double lambda, int count, Monitor& monitor);
   /// The eigenfunction at one place of the spectrum, 0 to size() - 1.
   Result<Eigenfunction> at(int number, Monitor& monitor);
 

@@ -88,7 +88,8 @@ TEST(LaplaceSpectrum, FunctionsSolveTheirEquation)
   {
     const Laplacian l = cotangentLaplacian(shape.surface());
     LaplaceSpectrum spectrum(l);
-    const auto found = spectrum.near(spectrum.weyl(40.0), 10);
+    Monitor monitor;
+    const auto found = spectrum.near(spectrum.weyl(40.0), 10, monitor);
     ASSERT_TRUE(found);
     ASSERT_EQ(found->size(), 10U);
     double last = 0.0;
@@ -128,8 +129,9 @@ TEST(LaplaceSpectrum, SameSurfaceSameBits)
   const TriangleSurface s = bsrtest::torus(50, 24).surface();
   LaplaceSpectrum a(cotangentLaplacian(s));
   LaplaceSpectrum b(cotangentLaplacian(s));
-  const auto ea = a.near(a.weyl(20.0), 6);
-  const auto eb = b.near(b.weyl(20.0), 6);
+  Monitor monitor;
+  const auto ea = a.near(a.weyl(20.0), 6, monitor);
+  const auto eb = b.near(b.weyl(20.0), 6, monitor);
   ASSERT_TRUE(ea && eb);
   for (std::size_t i = 0; i < ea->size(); ++i)
   {

@@ -51,24 +51,23 @@ void expectPartition(const QuadLayout& layout, int euler)
 
 TEST(MorseLayout, ClosedShapesOfAnyGenus)
 {
-  for (const auto& shape : {bsrtest::ellipsoid({1, 1, 1}, 5), bsrtest::ellipsoid({3, 2, 1}, 5),
-         bsrtest::torus(80, 40), bsrtest::doubleTorus(12)})
+  const std::vector<std::pair<bsrtest::AnalyticSurface, int>> shapes = {
+    {bsrtest::ellipsoid({1, 1, 1}, 4), 60}, {bsrtest::ellipsoid({3, 2, 1}, 4), 160},
+    {bsrtest::torus(80, 40), 40}, {bsrtest::doubleTorus(12), 100}};
+  for (const auto& [shape, quads] : shapes)
   {
-    for (int quads : {40, 160})
-    {
-      const auto layout = morse(shape.Mesh, quads);
-      expectSound(layout, shape.Euler, 0);
-      EXPECT_NEAR(layout->Mesh.Quads.size(), quads, 0.15 * quads);
-      expectPartition(*layout, shape.Euler);
-    }
+    const auto layout = morse(shape.Mesh, quads);
+    expectSound(layout, shape.Euler, 0);
+    EXPECT_NEAR(layout->Mesh.Quads.size(), quads, 0.15 * quads);
+    expectPartition(*layout, shape.Euler);
   }
 }
 
 TEST(MorseLayout, OpenTubeKeepsItsBoundaries)
 {
-  for (int quads : {30, 120})
+  for (int quads : {30, 90})
   {
-    const auto layout = morse(bsrtest::tube(40, 60).Mesh, quads);
+    const auto layout = morse(bsrtest::tube(30, 40).Mesh, quads);
     expectSound(layout, 0, 2);
     EXPECT_NEAR(layout->Mesh.Quads.size(), quads, 0.2 * quads);
   }
