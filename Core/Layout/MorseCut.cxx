@@ -1,6 +1,7 @@
 #include "Layout/MorseCut.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace bsr
 {
@@ -38,8 +39,8 @@ void MorseCut::run()
 
 Index MorseCut::left(Index a, Index b) const
 {
-  const auto at = this->Edges.find(keyOf(a, b));
-  return at == this->Edges.end() ? -1 : at->second;
+  const Index at = this->place(a, b);
+  return at < 0 ? -1 : this->Left[at];
 }
 
 Index MorseCut::cellAt(Index a, Index b) const
@@ -150,12 +151,8 @@ void MorseCut::walkUp(Index t)
 
 void MorseCut::add(Index a, Index b, Index c)
 {
-  const auto t = static_cast<Index>(this->Out.Mesh.Triangles.size());
   this->Out.Mesh.Triangles.push_back({a, b, c});
   this->Origin.push_back(this->Current);
-  this->Edges[keyOf(a, b)] = t;
-  this->Edges[keyOf(b, c)] = t;
-  this->Edges[keyOf(c, a)] = t;
 }
 
 void MorseCut::cut(Index t)
@@ -279,6 +276,55 @@ void MorseCut::cutAtMaximum(Index t)
   }
 }
 
+void MorseCut::index()
+{
+  const auto& triangles = this->Out.Mesh.Triangles;
+  this->First.assign(this->Out.Mesh.Points.size() + 1, 0);
+  for (const auto& t : triangles)
+  {
+    for (Index v : t)
+    {
+      ++this->First[v + 1];
+    }
+  }
+  std::partial_sum(this->First.begin(), this->First.end(), this->First.begin());
+  std::vector<Index> at(this->First.begin(), this->First.end() - 1);
+  this->End.resize(3 * triangles.size());
+  this->Left.resize(3 * triangles.size());
+  this->Fence.assign(3 * triangles.size(), 0);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      const Index i = at[triangles[t][k]]++;
+      this->End[i] = triangles[t][(k + 1) % 3];
+      this->Left[i] = static_cast<Index>(t);
+    }
+  }
+  for (const auto& b : this->Barriers)
+  {
+    for (Index i : {this->place(b.first, b.second), this->place(b.second, b.first)})
+    {
+      if (i >= 0)
+      {
+        this->Fence[i] = 1;
+      }
+    }
+  }
+}
+
+Index MorseCut::place(Index a, Index b) const
+{
+  for (Index i = this->First[a]; i < this->First[a + 1]; ++i)
+  {
+    if (this->End[i] == b)
+    {
+      return i;
+    }
+  }
+  return -1;
+}
+
 void MorseCut::grow()
 {
   for (Index h : this->G.Saddles)
@@ -287,6 +333,7 @@ void MorseCut::grow()
     this->barrier(m, this->Number[this->S.start(h)]);
     this->barrier(m, this->Number[this->S.end(h)]);
   }
+  this->index();
   const auto& triangles = this->Out.Mesh.Triangles;
   this->Out.Cell.assign(triangles.size(), -1);
   std::vector<Index> queue;
@@ -304,11 +351,9 @@ void MorseCut::grow()
       queue.pop_back();
       for (int k = 0; k < 3; ++k)
       {
-        const Index a = c[k];
-        const Index b = c[(k + 1) % 3];
-        const Index other = this->left(b, a);
-        if (other >= 0 && this->Out.Cell[other] < 0 &&
-            this->Barriers.count(keyOf(std::min(a, b), std::max(a, b))) == 0)
+        const Index i = this->place(c[(k + 1) % 3], c[k]);
+        const Index other = i < 0 || this->Fence[i] ? -1 : this->Left[i];
+        if (other >= 0 && this->Out.Cell[other] < 0)
         {
           this->Out.Cell[other] = this->Cells;
           queue.push_back(other);

@@ -2,8 +2,6 @@
 
 #include "Layout/MorseGradient.h"
 
-#include <unordered_map>
-
 namespace bsr
 {
 /// What a vertex of a partitioned surface is for the function.
@@ -48,17 +46,13 @@ public:
   std::vector<std::pair<Index, Index>> extrema() const;
 
 private:
-  static std::uint64_t keyOf(Index a, Index b)
-  {
-    return (static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint32_t>(b);
-  }
   Index addPoint(const Vec3& p, double value);
 
   void trace();
   void walkDown(Index v);
   void walkUp(Index t);
 
-  void barrier(Index a, Index b) { this->Barriers[keyOf(std::min(a, b), std::max(a, b))] = 1; }
+  void barrier(Index a, Index b) { this->Barriers.emplace_back(a, b); }
   void add(Index a, Index b, Index c);
 
   /// Splits a triangle along the paths through it.
@@ -73,6 +67,10 @@ private:
   /// The paths end at the highest corner.
   void cutAtMaximum(Index t);
 
+  /// Lists the directed edges by the point they start at.
+  void index();
+  /// Place of a directed edge in the list, -1 if there is none.
+  Index place(Index a, Index b) const;
   /// Cells by region growing between the paths.
   void grow();
 
@@ -85,8 +83,11 @@ private:
   std::vector<Index> Middle;         ///< per half-edge, at the smaller one of an edge
   std::vector<Index> Number;         ///< point of each vertex
   std::vector<Index> Origin;         ///< per triangle of the cut surface: that it comes from
-  std::unordered_map<std::uint64_t, Index> Edges; ///< triangle left of a directed edge
-  std::unordered_map<std::uint64_t, char> Barriers;
+  std::vector<std::pair<Index, Index>> Barriers;
+  std::vector<Index> First;        ///< per point: place of its first edge; one more at the end
+  std::vector<Index> End;          ///< per directed edge: the point it ends at
+  std::vector<Index> Left;         ///< per directed edge: the triangle left of it
+  std::vector<std::uint8_t> Fence; ///< per directed edge: a path runs along
   Index Cells = 0;
   Index Current = -1;
 };

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace bsr
 {
@@ -20,7 +21,8 @@ struct Candidate
   std::size_t Cancelled = 0;
   int Subdivisions = 0;
   MorseCells Cells;
-  LayoutDraft Draft; ///< no quads: not valid
+  LayoutDraft Draft;                                      ///< no quads: not valid
+  double Guess = std::numeric_limits<double>::infinity(); ///< of the cost, before it is relaxed
   double Cost = std::numeric_limits<double>::infinity();
 
   int quads() const { return static_cast<int>(this->Draft.Mesh.Quads.size()); }
@@ -51,17 +53,11 @@ public:
     return status;
   }
 
-  /// Relaxes the candidates nearest to the number asked for; the best one first.
+  /// Relaxes the candidates that promise most; the best one first.
   Status finish(std::size_t most, Monitor& monitor)
   {
-    const auto miss = [&](const Candidate& c)
-    {
-      return c.quads() == 0
-               ? 1e9
-               : std::abs(std::log(static_cast<double>(c.quads()) / this->Options.NumberOfQuads));
-    };
     std::stable_sort(this->Found.begin(), this->Found.end(),
-      [&](const Candidate& a, const Candidate& b) { return miss(a) < miss(b); });
+      [](const Candidate& a, const Candidate& b) { return a.Guess < b.Guess; });
     this->Found.resize(std::min(most, this->Found.size()));
     const Status status =
       inGroups(this->Found.size(), monitor, [&](std::size_t i) { this->judge(this->Found[i]); });
@@ -150,7 +146,18 @@ private:
     if (report.Valid && report.Euler == this->Euler)
     {
       c.Draft = std::move(draft);
+      c.Guess = report.MeanAngleDeviation +
+                3.3 * report.Irregular / std::sqrt(static_cast<double>(c.quads())) +
+                2.0 * this->countCost(c);
     }
+  }
+
+  /// The number of quads asked for is kept where there is a choice.
+  double countCost(const Candidate& c) const
+  {
+    const double miss =
+      std::abs(std::log(static_cast<double>(c.quads()) / this->Options.NumberOfQuads));
+    return 60.0 * std::max(0.0, miss - 0.07);
   }
 
   void judge(Candidate& c) const
@@ -175,50 +182,108 @@ private:
   int Euler;
 };
 
-/// Goes through the spectrum until the complexes have as many cells as asked for.
-Status searchSpectrum(
-  LaplaceSpectrum& spectrum, const MorseOptions& options, Search& search, Monitor& monitor)
+/// Goes through the spectrum, first to where the complexes have as many cells as asked for, then
+/// outwards from there.
+class SpectrumSearch
 {
-  constexpr int batch = 12;
-  double number = std::max(2.0, options.NumberOfQuads / 1.5);
-  for (int round = 0; round < 4; ++round)
+public:
+  SpectrumSearch(LaplaceSpectrum& spectrum, const MorseOptions& options, Search& search)
+      : Spectrum(spectrum), Options(options), Found(search)
   {
-    if (monitor.cancelled())
+  }
+
+  Status run(Monitor& monitor)
+  {
+    constexpr int rounds = 5;
+    for (int round = 0; round < rounds; ++round)
     {
-      return Status::cancelled();
-    }
-    monitor.progress(round / 5.0);
-    const auto functions = spectrum.near(spectrum.weyl(number), batch, monitor);
-    if (!functions)
-    {
-      return functions.status();
-    }
-    const std::size_t before = search.Found.size();
-    if (Status status = search.take(*functions, true, monitor); !status)
-    {
-      return status;
-    }
-    std::vector<double> ratio;
-    for (std::size_t i = before; i < search.Found.size(); ++i)
-    {
-      const Candidate& c = search.Found[i];
-      if (c.Cells.Cells > 0)
+      if (monitor.cancelled())
       {
-        ratio.push_back(static_cast<double>(c.Cells.Cells) / options.NumberOfQuads);
+        return Status::cancelled();
+      }
+      monitor.progress(static_cast<double>(round) / rounds);
+      auto functions = this->Spectrum.near(this->shift(this->place()), Batch, monitor);
+      if (!functions)
+      {
+        return functions.status();
+      }
+      std::vector<Eigenfunction> fresh;
+      for (Eigenfunction& e : *functions)
+      {
+        if (e.Number > 0 && this->Tried.emplace(e.Number, e.Eigenvalue).second)
+        {
+          fresh.push_back(std::move(e));
+        }
+      }
+      if (Status status = this->Found.take(fresh, true, monitor); !status)
+      {
+        return status;
       }
     }
-    if (ratio.empty())
-    {
-      number *= 1.3;
-      continue;
-    }
-    std::nth_element(ratio.begin(), ratio.begin() + ratio.size() / 2, ratio.end());
-    const double median = ratio[ratio.size() / 2];
-    number /= std::clamp(median, 0.5, 2.0);
-    number = std::clamp(number, 2.0, 0.2 * spectrum.size());
+    return Status::ok();
   }
-  return Status::ok();
-}
+
+private:
+  static constexpr int Batch = 12;
+
+  /// Where in the spectrum to look next.
+  double place() const
+  {
+    const double last = 0.2 * this->Spectrum.size();
+    const double aim = std::clamp(this->Options.NumberOfQuads / this->rate(), 1.0, last);
+    const auto center = static_cast<int>(std::lround(aim));
+    if (this->Tried.count(center) == 0)
+    {
+      return aim;
+    }
+    int up = center;
+    int down = center;
+    while (this->Tried.count(up) != 0)
+    {
+      ++up;
+    }
+    while (this->Tried.count(down) != 0)
+    {
+      --down;
+    }
+    const bool upwards = down < 1 || up - center <= center - down;
+    return std::clamp(upwards ? up + 0.5 * Batch - 1.0 : down - 0.5 * Batch + 1.0, 1.0, last);
+  }
+
+  /// Quads a place, by what was found (1.5 before): the median.
+  double rate() const
+  {
+    std::vector<double> rates;
+    for (const Candidate& c : this->Found.Found)
+    {
+      const double got = c.quads() > 0 ? c.quads() : 0.9 * c.Cells.Cells;
+      rates.push_back(got / c.Number);
+    }
+    if (rates.empty())
+    {
+      return 1.5;
+    }
+    std::nth_element(rates.begin(), rates.begin() + rates.size() / 2, rates.end());
+    return std::clamp(rates[rates.size() / 2], 0.3, 4.0);
+  }
+
+  /// The eigenvalue expected at a place, from the nearest one known.
+  double shift(double place) const
+  {
+    const auto after = this->Tried.lower_bound(static_cast<int>(place));
+    if (this->Tried.empty())
+    {
+      return this->Spectrum.weyl(place);
+    }
+    const auto& known = after == this->Tried.end() ? *std::prev(after) : *after;
+    return known.second * place / known.first;
+  }
+
+  LaplaceSpectrum& Spectrum;
+  const MorseOptions& Options;
+  Search& Found;
+  std::map<int, double> Tried; ///< eigenvalue of each place
+};
 
 Result<TriangleSurface> evenSurface(const TriangleSurface& s, const ReferenceSurface& reference,
   const Sizing& sizing, const MorseOptions& options, Monitor& monitor)
@@ -268,11 +333,11 @@ Result<MorseLayout> morseLayout(const TriangleSurface& s, const ReferenceSurface
       return status;
     }
   }
-  else if (Status status = searchSpectrum(spectrum, options, search, searching); !status)
+  else if (Status status = SpectrumSearch(spectrum, options, search).run(searching); !status)
   {
     return status;
   }
-  if (Status status = search.finish(20, monitor); !status)
+  if (Status status = search.finish(24, monitor); !status)
   {
     return status;
   }
