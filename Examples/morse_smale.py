@@ -78,14 +78,15 @@ def main(path, picture, quads):
         view.UseColorPaletteForBackground = 0
         view.Background = [1.0, 1.0, 1.0]
         view.OrientationAxesVisibility = 0
-        for representation in view.Representations:
-            if hasattr(representation, "SetScalarBarVisibility"):
-                representation.SetScalarBarVisibility(view, False)
-        ResetCamera(view)
-    for view in (left, middle, right):
+        Render(view)
+    function.SetScalarBarVisibility(left, False)
+    cells.SetScalarBarVisibility(middle, False)
+    ResetCamera(left)
+    for view in (middle, right):
         view.CameraPosition = left.CameraPosition
         view.CameraFocalPoint = left.CameraFocalPoint
         view.CameraViewUp = left.CameraViewUp
+    for view in (left, middle, right):
         view.CameraViewAngle = 24
     SaveScreenshot(picture, views, ImageResolution=[1800, 640])
 

@@ -66,6 +66,14 @@ public:
     return status;
   }
 
+  /// The number of quads asked for is kept where there is a choice.
+  double countCost(const Candidate& c) const
+  {
+    const double miss =
+      std::abs(std::log(static_cast<double>(c.quads()) / this->Options.NumberOfQuads));
+    return 300.0 * std::max(0.0, miss - 0.07);
+  }
+
   std::vector<Candidate> Found;
 
 private:
@@ -123,7 +131,7 @@ private:
     };
     const int quads = add(cancelled);
     const int surplus = (quads - this->Options.NumberOfQuads) / 2;
-    if (count && surplus > 0 && quads < 1.3 * this->Options.NumberOfQuads)
+    if (count && surplus > 0 && quads < 1.4 * this->Options.NumberOfQuads)
     {
       add(std::min(cancelled + surplus, pairs.size()));
     }
@@ -148,16 +156,8 @@ private:
       c.Draft = std::move(draft);
       c.Guess = report.MeanAngleDeviation +
                 3.3 * report.Irregular / std::sqrt(static_cast<double>(c.quads())) +
-                2.0 * this->countCost(c);
+                this->countCost(c);
     }
-  }
-
-  /// The number of quads asked for is kept where there is a choice.
-  double countCost(const Candidate& c) const
-  {
-    const double miss =
-      std::abs(std::log(static_cast<double>(c.quads()) / this->Options.NumberOfQuads));
-    return 60.0 * std::max(0.0, miss - 0.07);
   }
 
   void judge(Candidate& c) const
@@ -195,13 +195,14 @@ public:
   Status run(Monitor& monitor)
   {
     constexpr int rounds = 5;
-    for (int round = 0; round < rounds; ++round)
+    constexpr int most = 9; // symmetric surfaces have but few numbers of cells
+    for (int round = 0; round < rounds || (round < most && !this->met()); ++round)
     {
       if (monitor.cancelled())
       {
         return Status::cancelled();
       }
-      monitor.progress(static_cast<double>(round) / rounds);
+      monitor.progress(static_cast<double>(round) / (round < rounds ? rounds : most));
       auto functions = this->Spectrum.near(this->shift(this->place()), Batch, monitor);
       if (!functions)
       {
@@ -225,6 +226,13 @@ public:
 
 private:
   static constexpr int Batch = 12;
+
+  /// Is there a layout of about as many quads as asked for?
+  bool met() const
+  {
+    return std::any_of(this->Found.Found.begin(), this->Found.Found.end(),
+      [&](const Candidate& c) { return c.quads() > 0 && this->Found.countCost(c) < 10.0; });
+  }
 
   /// Where in the spectrum to look next.
   double place() const
@@ -276,7 +284,7 @@ private:
       return this->Spectrum.weyl(place);
     }
     const auto& known = after == this->Tried.end() ? *std::prev(after) : *after;
-    return known.second * place / known.first;
+    return known.second * (place + 0.4) / known.first; // between places, as a rule
   }
 
   LaplaceSpectrum& Spectrum;

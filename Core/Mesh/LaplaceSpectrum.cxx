@@ -114,28 +114,39 @@ Index LaplaceSpectrum::countBelow(double lambda)
 
 Result<std::vector<Eigenfunction>> LaplaceSpectrum::near(double lambda, int count, Monitor& monitor)
 {
-  const Index n = this->size();
-  const int wanted = std::min<int>(count, n - 2);
+  const int wanted = std::min<int>(count, this->size() - 2);
   if (wanted < 1)
   {
     return Status::invalidInput("The surface has too few points for eigenfunctions.");
   }
-  Index below = this->countBelow(lambda);
-  for (int i = 0; i < 4 && below < 0; ++i)
+  // A shift on an eigenvalue (of the matrix or of a leading block) is moved aside.
+  for (int attempt = 0; attempt < 4; ++attempt)
   {
-    lambda += 1e-6 * (1.0 + i) * this->weyl(1.0); // hit an eigenvalue of a leading block
-    below = this->countBelow(lambda);
+    const double shift = lambda + (attempt * 0.013) * this->weyl(1.0);
+    auto found = this->lanczos(shift, wanted, monitor);
+    if (!found || !found->empty())
+    {
+      return found;
+    }
   }
+  return Status::failed("The eigenfunctions of the surface did not converge; remesh it first.");
+}
+
+Result<std::vector<Eigenfunction>> LaplaceSpectrum::lanczos(
+  double shift, int wanted, Monitor& monitor)
+{
+  std::vector<Eigenfunction> found;
+  const Index below = this->countBelow(shift);
   if (below < 0)
   {
-    return Status::failed("The Laplacian of the surface could not be factorized; remesh it first.");
+    return found;
   }
-  std::vector<Eigenfunction> found;
+  const Index n = this->size();
   this->Solver->Watch = &monitor;
   try
   {
     const int space = std::min<int>(n, std::max(2 * wanted + 10, 24));
-    Spectra::SymEigsShiftSolver<Factor> solver(*this->Solver, wanted, space, lambda);
+    Spectra::SymEigsShiftSolver<Factor> solver(*this->Solver, wanted, space, shift);
     CounterRandom random(1, 0);
     Eigen::VectorXd start(n);
     for (Index i = 0; i < n; ++i)
@@ -146,21 +157,14 @@ Result<std::vector<Eigenfunction>> LaplaceSpectrum::near(double lambda, int coun
     solver.compute(Spectra::SortRule::LargestMagn, 300, 1e-9, Spectra::SortRule::SmallestAlge);
     const Eigen::VectorXd values = solver.eigenvalues();
     const Eigen::MatrixXd vectors = solver.eigenvectors();
-    const Index lower = static_cast<Index>((values.array() < lambda).count());
+    if (!values.allFinite() || !vectors.allFinite())
+    {
+      return found;
+    }
+    const auto lower = static_cast<Index>((values.array() < shift).count());
     for (Index i = 0; i < values.size(); ++i)
     {
-      const Eigen::VectorXd u = vectors.col(i).cwiseProduct(this->Scale);
-      Eigen::Index peak = 0;
-      u.cwiseAbs().maxCoeff(&peak);
-      Eigenfunction e;
-      e.Number = below + i - lower;
-      e.Eigenvalue = values[i];
-      e.Values.assign(this->Row.size(), 0.0);
-      for (std::size_t v = 0; v < this->Row.size(); ++v)
-      {
-        e.Values[v] = this->Row[v] < 0 ? 0.0 : u[this->Row[v]] / u[peak];
-      }
-      found.push_back(std::move(e));
+      found.push_back(this->function(below + i - lower, values[i], vectors.col(i)));
     }
   }
   catch (const Stopped&)
@@ -169,13 +173,26 @@ Result<std::vector<Eigenfunction>> LaplaceSpectrum::near(double lambda, int coun
   }
   catch (const std::exception&)
   {
-    return Status::failed("The eigenfunctions of the surface did not converge; remesh it first.");
-  }
-  if (found.empty())
-  {
-    return Status::failed("The eigenfunctions of the surface did not converge; remesh it first.");
+    found.clear();
   }
   return found;
+}
+
+Eigenfunction LaplaceSpectrum::function(
+  Index number, double value, const Eigen::VectorXd& vector) const
+{
+  const Eigen::VectorXd u = vector.cwiseProduct(this->Scale);
+  Eigen::Index peak = 0;
+  u.cwiseAbs().maxCoeff(&peak);
+  Eigenfunction e;
+  e.Number = number;
+  e.Eigenvalue = value;
+  e.Values.assign(this->Row.size(), 0.0);
+  for (std::size_t v = 0; v < this->Row.size(); ++v)
+  {
+    e.Values[v] = this->Row[v] < 0 ? 0.0 : u[this->Row[v]] / u[peak];
+  }
+  return e;
 }
 
 Result<Eigenfunction> LaplaceSpectrum::at(int number, Monitor& monitor)

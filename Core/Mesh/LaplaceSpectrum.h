@@ -45,6 +45,11 @@ public:
 
 private:
   struct Factor;
+
+  /// What converged at this very shift; nothing if it is no good.
+  Result<std::vector<Eigenfunction>> lanczos(double shift, int wanted, Monitor& monitor);
+  Eigenfunction function(Index number, double value, const Eigen::VectorXd& vector) const;
+
   std::vector<Index> Row;
   Eigen::VectorXd Scale; ///< 1 / sqrt(mass)
   double Area = 0.0;
