@@ -1,9 +1,12 @@
 #include "Image/Threshold.h"
 
 #include "Common/MonitoredLoop.h"
+#include "Image/DistanceTransform.h"
 #include "Image/ScalarTypes.h"
 
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <type_traits>
 #include <vector>
 
@@ -20,8 +23,10 @@ struct Histogram
   std::vector<double> Count;
 };
 
-template <class T>
-Histogram histogramOf(const ImageView<const T>& image, const ValueRange& range)
+/// Of the voxels for which counts(index) holds.
+template <class T, class Predicate>
+Histogram histogramOf(
+  const ImageView<const T>& image, const ValueRange& range, const Predicate& counts)
 {
   Histogram h;
   const double span = range.Max - range.Min;
@@ -31,15 +36,18 @@ Histogram histogramOf(const ImageView<const T>& image, const ValueRange& range)
   h.First = whole ? range.Min : range.Min + 0.5 * h.Width;
   const double scale = whole ? 1.0 : static_cast<double>(bins) / span;
   using Counts = std::vector<std::int64_t>;
-  const Counts counts = parallelReduce(
+  const Counts sums = parallelReduce(
     0, image.size(), std::max(Chunk, image.size() / 16 + 1), Counts(),
     [&](std::int64_t begin, std::int64_t end)
     {
       Counts c(static_cast<std::size_t>(bins), 0);
       for (std::int64_t i = begin; i < end; ++i)
       {
-        const double at = (static_cast<double>(image.Data[i]) - range.Min) * scale;
-        ++c[std::min(bins - 1, static_cast<std::int64_t>(at))];
+        if (counts(i))
+        {
+          const double at = (static_cast<double>(image.Data[i]) - range.Min) * scale;
+          ++c[std::min(bins - 1, static_cast<std::int64_t>(at))];
+        }
       }
       return c;
     },
@@ -52,7 +60,7 @@ Histogram histogramOf(const ImageView<const T>& image, const ValueRange& range)
       }
       return a;
     });
-  h.Count.assign(counts.begin(), counts.end());
+  h.Count.assign(sums.begin(), sums.end());
   return h;
 }
 
@@ -95,53 +103,84 @@ double bestBorder(const Histogram& h)
   return h.First + h.Width * (0.5 * (first + last) + 0.5);
 }
 
-/// Sums over the voxels of both classes that have only neighbors of their own class.
-struct InnerSums
-{
-  std::array<double, 2> Sum{{0.0, 0.0}};
-  std::array<double, 2> Inner{{0.0, 0.0}};
-  std::array<double, 2> All{{0.0, 0.0}};
-};
+/// Depths in voxels that the levels of a phase are tried at, and the voxels that it takes.
+constexpr std::array<double, 5> LevelDepths{{3.0, 2.5, 2.0, 1.5, 1.2}};
+constexpr double LeastShare = 0.02; ///< of the phase's voxels
+constexpr std::int64_t LeastVoxels = 64;
+constexpr int LevelRounds = 4;
+constexpr double LevelTolerance = 0.005; ///< of the contrast
 
-template <class T>
-InnerSums innerSums(const ImageView<const T>& image, const Volume<std::uint8_t>& mask)
+/// The greatest of LevelDepths (squared) that enough voxels of a phase reach; 0: none.
+double levelDepth(const std::vector<std::int64_t>& reached, std::int64_t all)
 {
-  const Int3& n = image.Dims;
-  const ImageView<const std::uint8_t> m = mask.view();
-  const auto rowSums = [&](std::int64_t begin, std::int64_t end)
+  const auto least =
+    std::max(LeastVoxels, static_cast<std::int64_t>(LeastShare * static_cast<double>(all)));
+  for (std::size_t k = 0; k < LevelDepths.size(); ++k)
   {
-    InnerSums s;
-    for (std::int64_t r = begin; r < end; ++r)
+    if (reached[k] >= least)
     {
-      const std::int64_t j = 1 + r % (n[1] - 2);
-      const std::int64_t k = 1 + r / (n[1] - 2);
-      const std::uint8_t* const row = m.row(j, k);
-      const T* const gray = image.row(j, k);
-      for (std::int64_t i = 1; i + 1 < n[0]; ++i)
-      {
-        const int sum = row[i - 1] + row[i] + row[i + 1] + row[i - n[0]] + row[i + n[0]] +
-                        row[i - n[0] * n[1]] + row[i + n[0] * n[1]];
-        s.All[row[i]] += 1.0;
-        if (sum == 0 || sum == 7)
-        {
-          s.Sum[row[i]] += static_cast<double>(gray[i]);
-          s.Inner[row[i]] += 1.0;
-        }
-      }
+      return LevelDepths[k] * LevelDepths[k];
     }
-    return s;
-  };
-  return parallelReduce(0, (n[1] - 2) * (n[2] - 2), 64, InnerSums(), rowSums,
-    [](InnerSums a, const InnerSums& b)
+  }
+  return 0.0;
+}
+
+/// Middle of a histogram, between the bins' borders where it falls inside of one.
+double medianOf(const Histogram& h)
+{
+  const double half = 0.5 * std::accumulate(h.Count.begin(), h.Count.end(), 0.0);
+  double below = 0.0;
+  std::size_t i = 0;
+  while (i + 1 < h.Count.size() && below + h.Count[i] < half)
+  {
+    below += h.Count[i++];
+  }
+  const double within = h.Count[i] > 0.0 ? (half - below) / h.Count[i] : 0.5;
+  return h.First + h.Width * (static_cast<double>(i) + within - 0.5);
+}
+
+/// The gray value of a phase away from its border: the median of its deepest voxels. NaN where the
+/// phase has no voxel without a neighbor of the other.
+template <class T>
+Result<double> phaseLevel(const ImageView<const T>& image, const ValueRange& range,
+  const Volume<std::uint8_t>& mask, std::uint8_t phase, Monitor& monitor)
+{
+  DistanceOptions o;
+  o.ToZeros = phase != 0;
+  o.Bound = LevelDepths.front() + 0.1;
+  const auto depth = squaredDistance(mask.view(), o, monitor);
+  if (!depth)
+  {
+    return depth.status();
+  }
+  using Counts = std::vector<std::int64_t>;
+  const Counts reached = parallelReduce(
+    0, image.size(), Chunk, Counts(LevelDepths.size() + 1, 0),
+    [&](std::int64_t begin, std::int64_t end)
     {
-      for (int c = 0; c < 2; ++c)
+      Counts c(LevelDepths.size() + 1, 0);
+      for (std::int64_t i = begin; i < end; ++i)
       {
-        a.Sum[c] += b.Sum[c];
-        a.Inner[c] += b.Inner[c];
-        a.All[c] += b.All[c];
+        for (std::size_t k = 0; mask.Data[i] == phase && k < LevelDepths.size(); ++k)
+        {
+          c[k] += depth->Data[i] > LevelDepths[k] * LevelDepths[k] * (1.0 - 1e-6);
+        }
+        c.back() += mask.Data[i] == phase;
       }
+      return c;
+    },
+    [](Counts a, const Counts& b)
+    {
+      std::transform(a.begin(), a.end(), b.begin(), a.begin(), std::plus<>());
       return a;
     });
+  const double least = levelDepth(reached, reached.back()) * (1.0 - 1e-6);
+  if (least <= 0.0)
+  {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  return medianOf(histogramOf(
+    image, range, [&](std::int64_t i) { return mask.Data[i] == phase && depth->Data[i] > least; }));
 }
 } // namespace
 
@@ -205,7 +244,7 @@ Result<double> otsuThreshold(const ImageView<const T>& image, Monitor& monitor)
   {
     return Status::cancelled();
   }
-  return bestBorder(histogramOf(image, range));
+  return bestBorder(histogramOf(image, range, [](std::int64_t) { return true; }));
 }
 
 template <class T>
@@ -231,25 +270,39 @@ Result<Volume<std::uint8_t>> thresholdMask(
 template <class T>
 Result<double> halfwayThreshold(const ImageView<const T>& image, double start, Monitor& monitor)
 {
-  double threshold = start;
-  if (image.Dims[0] < 3 || image.Dims[1] < 3 || image.Dims[2] < 3)
+  const ValueRange range = valueRange(image);
+  if (range.NotFinite > 0 || !(range.Max > range.Min))
   {
     return start;
   }
-  for (int iteration = 0; iteration < 3; ++iteration)
+  double threshold = start;
+  for (int round = 0; round < LevelRounds; ++round)
   {
     const auto mask = thresholdMask(image, threshold, monitor);
     if (!mask)
     {
       return mask.status();
     }
-    const InnerSums s = innerSums(image, *mask);
-    if (s.Inner[0] < 0.1 * s.All[0] || s.Inner[1] < 0.1 * s.All[1] || s.Inner[0] < 1.0 ||
-        s.Inner[1] < 1.0)
+    std::array<double, 2> level{};
+    for (const std::uint8_t phase : {0, 1})
+    {
+      const auto found = phaseLevel(image, range, *mask, phase, monitor);
+      if (!found)
+      {
+        return found.status();
+      }
+      level[phase] = *found;
+    }
+    if (!(level[1] > level[0])) // also where one is not known
     {
       return start;
     }
-    threshold = 0.5 * (s.Sum[0] / s.Inner[0] + s.Sum[1] / s.Inner[1]);
+    const double moved = std::abs(0.5 * (level[0] + level[1]) - threshold);
+    threshold = 0.5 * (level[0] + level[1]);
+    if (moved <= LevelTolerance * (level[1] - level[0]))
+    {
+      break;
+    }
   }
   return threshold;
 }
