@@ -77,7 +77,7 @@ public:
 
   ///@{
   /// Method Facing Void: radius in voxels of a ball that does not pass through the holes of the
-  /// wall, but through the lumen. Default 0: 0.45 of the lumen's median radius.
+  /// wall, but through the lumen. Default 0: 0.65 of the lumen's median radius.
   vtkSetMacro(PoreRadius, double);
   vtkGetMacro(PoreRadius, double);
   ///@}

@@ -16,9 +16,10 @@ constexpr double Ratio = 1.2;      // of neighboring radii of the curve
 constexpr double FineRatio = 1.05; // to which the end of the rise is refined
 constexpr double Margin = 1.08;    // on the radius where the rise ends
 constexpr double CoarseSamples = 4.0e5;
-constexpr double SteepAtLeast = 0.5;  // d ln(volume) / d ln(radius) of a lumen being filled
+constexpr double SteepAtLeast = 0.3;  // d ln(volume) / d ln(radius) of a lumen being filled
 constexpr double StillSteep = 0.35;   // share of the steepest slope that still belongs to the rise
 constexpr double PlateauAtMost = 0.2; // share of the steepest slope that a plateau may have
+constexpr std::size_t PlateauWithin = 3; // intervals after the rise
 
 /// At every Step-th voxel the curve is sampled.
 std::int64_t samplingStep(const Volume<std::uint8_t>& object)
@@ -247,8 +248,13 @@ std::size_t endOfRise(const ClosingCurve& c, double& steepest)
   {
     --end;
   }
-  const std::size_t after = std::min(end + 2, c.Radius.size() - 1);
-  return after > end && slope(c, end, after) <= PlateauAtMost * steepest ? end : 0;
+  const std::size_t last = std::min(end + PlateauWithin, c.Radius.size() - 1);
+  double flattest = steepest;
+  for (std::size_t i = end + 1; i <= last; ++i)
+  {
+    flattest = std::min(flattest, slope(c, i - 1, i));
+  }
+  return flattest <= PlateauAtMost * steepest ? end : 0;
 }
 
 /// Where in the last steep interval the steep part ends.

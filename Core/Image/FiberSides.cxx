@@ -4,6 +4,7 @@
 #include "Image/DigitalTopology.h"
 #include "Image/DistanceTransform.h"
 #include "Image/Lumen.h"
+#include "Image/MaskOperations.h"
 #include "Image/SmoothWall.h"
 #include "Image/SurfaceVoxels.h"
 
@@ -13,12 +14,11 @@ namespace bsr
 {
 namespace
 {
-using Mask = Volume<std::uint8_t>;
-
 constexpr double OuterSigma = 4.5; ///< voxels: of the smooth walls
 constexpr double InnerSigma = 3.0;
 constexpr double OuterTolerance = 1.7;  ///< voxels from the smooth outer wall
 constexpr double InnerTolerance = 1.12; ///< voxels from the smooth inner wall
+constexpr double OuterShare = 0.7;      ///< of the pore radius: closes the outer wall
 constexpr double SmallOpening = 2.5;    ///< voxels: what of the lumen is narrower is not wall
 constexpr double Margin = 12.0;         ///< voxels around the closed object
 constexpr double NearObject = 3.0;      ///< voxels around it where the void is looked at
@@ -77,6 +77,23 @@ Mask cropped(const ClosedObject& object, const Box& box, const F& value)
       }
     });
   return m;
+}
+
+/// Where the void is looked at, as findLumen wants it.
+Mask nearMask(const ClosedObject& object, const Box& box)
+{
+  const auto below = [&](double limit)
+  {
+    return cropped(object, box,
+      [&](std::int64_t i) { return object.SignedDistance.Data[i] <= static_cast<float>(limit); });
+  };
+  Mask near = below(NearObject);
+  const Mask within = below(-CoreDepth);
+  for (std::int64_t i = 0; i < box.volume(); ++i)
+  {
+    near.Data[i] = within.Data[i] ? WithinObject : near.Data[i];
+  }
+  return near;
 }
 
 /// The raw object: what the surface encloses, within the closed object, without small parts.
@@ -223,9 +240,7 @@ Status sidesByVoid(const TriangleMesh& surface, const ClosedObject& object,
     {
       return raw.status();
     }
-    const Mask near = cropped(object, box,
-      [&](std::int64_t i)
-      { return object.SignedDistance.Data[i] <= static_cast<float>(NearObject); });
+    const Mask near = nearMask(object, box);
     SubMonitor finding(monitor, 0.1, 0.6);
     lumen = findLumen(*raw, near, LumenOptions{options.PoreRadius}, finding);
   }
@@ -247,7 +262,8 @@ Status sidesByVoid(const TriangleMesh& surface, const ClosedObject& object,
   std::transform(surface.Points.begin(), surface.Points.end(), points.begin(),
     [&](const Vec3& p) { return Vec3(p - shift); });
   SubMonitor outerPart(monitor, 0.6, 0.75);
-  const auto filled = filledObject(lumen->Label, lumen->PoreRadius, outerPart);
+  const auto filled =
+    filledObject(lumen->Label, std::max(SmallOpening, OuterShare * lumen->PoreRadius), outerPart);
   if (!filled)
   {
     return filled.status();

@@ -4,6 +4,8 @@
 #include "Image/BallClosing.h"
 #include "Image/DigitalTopology.h"
 #include "Image/DistanceTransform.h"
+#include "Image/LumenMouths.h"
+#include "Image/MaskOperations.h"
 #include "Image/Visibility.h"
 
 #include <cmath>
@@ -12,8 +14,6 @@ namespace bsr
 {
 namespace
 {
-using Mask = Volume<std::uint8_t>;
-
 constexpr double SmallPore = 2.5;      ///< voxels: pores up to this radius are always sealed
 constexpr std::uint8_t CoreOpen = 76;  ///< 0.30 of 255
 constexpr std::uint8_t DeepOpen = 31;  ///< 0.12
@@ -21,7 +21,8 @@ constexpr std::uint8_t GrowOpen = 127; ///< 0.5
 constexpr std::uint8_t GrowRing = 25;  ///< 0.1
 constexpr double SmallestLumen = 3.5;  ///< voxels
 constexpr double RidgeShare = 0.4;     ///< of the widest: lower ridges are the wall's roughness
-constexpr double SmallestMouth = 0.6;  ///< of the lumen's radius
+constexpr double SealShare = 0.65;     ///< of the lumen's radius: the ball that seals holes
+constexpr double GrowReach = 1.2;      ///< of the lumen's radius: towards the open ends
 constexpr double MouthDepth = 10.0;    ///< voxels
 constexpr double HoleMargin = 1.0;     ///< voxels: how far the lumen reaches into its holes
 
@@ -35,32 +36,6 @@ public:
 private:
   Monitor& Parent;
 };
-
-template <class Predicate>
-Mask maskWhere(const Mask& like, const Predicate& predicate)
-{
-  Mask m(like.Extent, like.Spacing);
-  std::uint8_t* const data = m.Data.get();
-  parallelFor(0, like.Extent.volume(), 65536,
-    [&](std::int64_t begin, std::int64_t end)
-    {
-      for (std::int64_t i = begin; i < end; ++i)
-      {
-        data[i] = predicate(i) ? 1 : 0;
-      }
-    });
-  return m;
-}
-
-/// Calls f(i) for the voxels of a run.
-template <class F>
-void eachVoxel(const LabeledRun& run, std::int64_t width, const F& f)
-{
-  for (std::int64_t i = run.Begin; i < run.End; ++i)
-  {
-    f(run.Row * width + i);
-  }
-}
 
 /// Clears the components (6) of `mask` for which keep(component) is false.
 template <class Keep>
@@ -102,7 +77,8 @@ Result<double> keepWideComponents(
   return static_cast<double>(widest);
 }
 
-/// Median distance to the object over the ridge of the distance within a mask, where above `least`.
+/// Median distance to the object over the ridge of the distance within a mask, where above
+/// `least`.
 double medianRidge(const Mask& mask, const Volume<float>& distance, double least)
 {
   const auto m = mask.view();
@@ -240,133 +216,7 @@ Result<Mask> findHoles(
   keepComponents(narrow, *parts, [&](std::int64_t c) { return open[c] != 0; });
   return narrow;
 }
-
-/// Calls f(voxel, neighbor, axis, direction) where a voxel of the lumen touches one of the outside.
-template <class F>
-void eachMouthFace(const Mask& lumen, const Mask& solid, const F& f)
-{
-  const Int3& n = lumen.Extent.Size;
-  const Int3 stride{1, n[0], n[0] * n[1]};
-  const auto inner = [&](std::int64_t i) { return lumen.Data[i] && !solid.Data[i]; };
-  const auto outer = [&](std::int64_t i) { return !lumen.Data[i] && !solid.Data[i]; };
-  for (std::int64_t k = 1; k + 1 < n[2]; ++k)
-  {
-    for (std::int64_t j = 1; j + 1 < n[1]; ++j)
-    {
-      for (std::int64_t i = 1; i + 1 < n[0]; ++i)
-      {
-        const std::int64_t at = lumen.view().index(i, j, k);
-        for (int s = 0; s < 6 && inner(at); ++s)
-        {
-          const int way = s < 3 ? 1 : -1;
-          const std::int64_t next = at + way * stride[s % 3];
-          if (outer(next))
-          {
-            f(Int3{i, j, k}, next, s % 3, way);
-          }
-        }
-      }
-    }
-  }
-}
-
-/// Outside voxels that touch the lumen at its open ends.
-Mask mouthFaces(const Mask& lumen, const Mask& solid)
-{
-  Mask faces = maskWhere(lumen, [](std::int64_t) { return false; });
-  eachMouthFace(
-    lumen, solid, [&](const Int3&, std::int64_t next, int, int) { faces.Data[next] = 1; });
-  return faces;
-}
-
-/// The open ends: parts of the interface of lumen and outside, by their vector area.
-Result<std::vector<LumenMouth>> findMouths(
-  const Mask& lumen, const Mask& solid, const Mask& faces, double smallest, Monitor& monitor)
-{
-  const auto wider = dilated(faces, 2.0, monitor);
-  if (!wider)
-  {
-    return wider.status();
-  }
-  const auto parts = connectedComponents(wider->view(), true, Connectivity::TwentySix, monitor);
-  if (!parts)
-  {
-    return parts.status();
-  }
-  std::vector<std::int32_t> part(static_cast<std::size_t>(lumen.Extent.volume()), -1);
-  for (const LabeledRun& run : parts->Runs)
-  {
-    eachVoxel(run, lumen.Extent.Size[0],
-      [&](std::int64_t i) { part[i] = static_cast<std::int32_t>(run.Label); });
-  }
-  struct Sum
-  {
-    Vec3 Area = Vec3::Zero();
-    Vec3 Center = Vec3::Zero();
-    double Weight = 0.0;
-  };
-  std::vector<Sum> sums(parts->Voxels.size());
-  const Double3& h = lumen.Spacing;
-  const double unit = voxelLength(h);
-  eachMouthFace(lumen, solid,
-    [&](const Int3& at, std::int64_t next, int axis, int way)
-    {
-      Sum& sum = sums[part[next]];
-      const double area = h[(axis + 1) % 3] * h[(axis + 2) % 3] / (unit * unit);
-      Vec3 p(static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2]));
-      p[axis] += 0.5 * way;
-      sum.Area[axis] += way * area;
-      sum.Center += area * p;
-      sum.Weight += area;
-    });
-  std::vector<LumenMouth> mouths;
-  for (const Sum& sum : sums)
-  {
-    const double area = sum.Area.norm();
-    const double radius = std::sqrt(area / 3.14159265358979323846);
-    if (area > 0.0 && radius >= smallest)
-    {
-      mouths.push_back({sum.Center / sum.Weight, sum.Area / area, radius});
-    }
-  }
-  return mouths;
-}
 } // namespace
-
-Result<Mask> dilated(const Mask& mask, double radius, Monitor& monitor)
-{
-  DistanceOptions options;
-  options.Bound = radius;
-  options.Extent = Box{{0, 0, 0}, mask.Extent.Size};
-  const auto d = squaredDistance(mask.view(), options, monitor);
-  if (!d)
-  {
-    return d.status();
-  }
-  const float limit = squaredLimit(radius);
-  const float* const data = d->Data.get();
-  return maskWhere(mask, [=](std::int64_t i) { return data[i] <= limit; });
-}
-
-Result<Mask> closed(const Mask& mask, double radius, Monitor& monitor)
-{
-  const auto box = closeByBall(mask.view(), radius, monitor);
-  if (!box)
-  {
-    return box.status();
-  }
-  Mask out = maskWhere(mask, [](std::int64_t) { return false; });
-  const Box& e = box->Extent;
-  for (std::int64_t k = 0; k < e.Size[2]; ++k)
-  {
-    for (std::int64_t j = 0; j < e.Size[1]; ++j)
-    {
-      const std::uint8_t* const row = box->view().row(j, k);
-      std::copy(row, row + e.Size[0], &out.view()(e.Lo[0], e.Lo[1] + j, e.Lo[2] + k));
-    }
-  }
-  return out;
-}
 
 Result<LumenResult> findLumen(
   const Mask& object, const Mask& near, const LumenOptions& options, Monitor& monitor)
@@ -395,8 +245,8 @@ Result<LumenResult> findLumen(
   }
   CancelOnly growing(monitor);
   LumenResult result;
-  Mask lumen =
-    maskWhere(near, [&](std::int64_t i) { return asked.Data[i] && seen->Open.Data[i] < CoreOpen; });
+  Mask lumen = maskWhere(near, [&](std::int64_t i)
+    { return asked.Data[i] && near.Data[i] >= WithinObject && seen->Open.Data[i] < CoreOpen; });
   const auto widest = keepWideComponents(lumen, *seen, *distance, growing);
   if (!widest)
   {
@@ -405,7 +255,7 @@ Result<LumenResult> findLumen(
   result.LumenRadius = medianRidge(lumen, *distance, std::max(3.0, RidgeShare * *widest));
   result.Found = *widest >= SmallestLumen && result.LumenRadius > 0.0;
   result.PoreRadius =
-    options.PoreRadius > 0.0 ? options.PoreRadius : std::max(small, 0.45 * result.LumenRadius);
+    options.PoreRadius > 0.0 ? options.PoreRadius : std::max(small, SealShare * result.LumenRadius);
   Mask mouth = maskWhere(near, [](std::int64_t) { return false; });
   Mask hole = maskWhere(near, [](std::int64_t) { return false; });
   if (result.Found)
@@ -416,13 +266,14 @@ Result<LumenResult> findLumen(
     {
       return wideSolid.status();
     }
-    const Status grown = grow(lumen, *wideSolid, asked, *seen, result.LumenRadius, growing);
+    const Status grown =
+      grow(lumen, *wideSolid, asked, *seen, GrowReach * result.LumenRadius + CoreDepth, growing);
     if (!grown)
     {
       return grown;
     }
     const Mask faces = mouthFaces(lumen, *wideSolid);
-    auto found = findMouths(lumen, *wideSolid, faces, SmallestMouth * result.LumenRadius, growing);
+    auto found = findMouths(lumen, *wideSolid, faces, result.LumenRadius, growing);
     if (!found)
     {
       return found.status();

@@ -18,9 +18,13 @@ enum class VoidLabel : std::uint8_t
   Hole = 5     ///< holes of the wall, as far as the void within reaches into them
 };
 
+/// Value of findLumen's mask `near` for voxels deeper than CoreDepth below the closed surface.
+constexpr std::uint8_t WithinObject = 2;
+constexpr double CoreDepth = 2.0; ///< voxels
+
 struct LumenOptions
 {
-  /// Radius in voxels of the ball that seals holes of the wall; 0: 0.45 of the lumen's radius.
+  /// Radius in voxels of the ball that seals holes of the wall; 0: 0.65 of the lumen's radius.
   double PoreRadius = 0.0;
 };
 
@@ -29,7 +33,7 @@ struct LumenMouth
 {
   Vec3 Center;         ///< voxel indices of the label image (0 is its first voxel)
   Vec3 Direction;      ///< unit vector out of the lumen, along the axes of the image
-  double Radius = 0.0; ///< of the disc of the same area, in voxels
+  double Radius = 0.0; ///< of the disc of the same vector area, in voxels
 };
 
 struct LumenResult
@@ -38,7 +42,7 @@ struct LumenResult
   Volume<std::uint8_t> Label;     ///< VoidLabel, on the object's extent
   double LumenRadius = 0.0;       ///< median radius of the balls inscribed in the lumen, in voxels
   double PoreRadius = 0.0;        ///< the one used, in voxels
-  std::vector<LumenMouth> Mouths; ///< those at least 0.6 as wide as the lumen
+  std::vector<LumenMouth> Mouths; ///< the open ends (see findMouths)
 };
 
 /**
@@ -46,22 +50,16 @@ struct LumenResult
  * by holes, cracks and open ends.
  *
  * After pores narrower than 2.5 voxels in radius have been sealed, rays are cast from the void near
- * and within the object (`near`): the lumen's core is where fewer than 30 % of all directions
- * escape. Concavities of the outside do not pass (from the bottom of a wide dent some 40 % escape),
- * holes neither (they are few). Towards its open ends the lumen then grows through voxels that are
- * still walled in all around in some plane, but only where a ball of PoreRadius passes: not through
- * holes. What of the lumen no such ball reaches and touches the outside is a hole's.
+ * and within the object (`near`: nonzero, WithinObject where deep enough for the core): the lumen's
+ * core is where fewer than 30 % of all directions escape, as far as it lies CoreDepth below the
+ * closed surface: nooks between the object and debris on its outside are as dark. Concavities of
+ * the outside do not pass (from the bottom of a wide dent some 40 % escape), holes neither (they
+ * are few). Towards its open ends the lumen then grows through voxels that are still walled in all
+ * around in some plane, but only where a ball of PoreRadius passes: not through holes. What of the
+ * lumen no such ball reaches and touches the outside is a hole's.
  *
  * Both masks cover the same extent, which should be some voxels wider than the object.
  */
 Result<LumenResult> findLumen(const Volume<std::uint8_t>& object, const Volume<std::uint8_t>& near,
   const LumenOptions& options, Monitor& monitor);
-
-/// Voxels within `radius` voxels of voxels nonzero in a mask, on its extent.
-Result<Volume<std::uint8_t>> dilated(
-  const Volume<std::uint8_t>& mask, double radius, Monitor& monitor);
-
-/// closeByBall on the mask's own extent.
-Result<Volume<std::uint8_t>> closed(
-  const Volume<std::uint8_t>& mask, double radius, Monitor& monitor);
 } // namespace bsr

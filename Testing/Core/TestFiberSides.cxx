@@ -48,7 +48,12 @@ Volume<std::uint8_t> maskOf(const Tube& tube)
 Result<LumenResult> lumenOf(const Tube& tube)
 {
   const auto near = bsrtest::makeVolume<std::uint8_t>(tube.Dims, tube.Spacing,
-    [&](const Int3& p) { return tube.r(p) <= 15.0 && p[0] >= 7 && p[0] <= 73 ? 1 : 0; });
+    [&](const Int3& p)
+    {
+      const bool within = tube.r(p) <= 10.0 && p[0] >= 12 && p[0] <= 68;
+      const bool close = tube.r(p) <= 15.0 && p[0] >= 7 && p[0] <= 73;
+      return within ? WithinObject : static_cast<std::uint8_t>(close);
+    });
   Monitor monitor;
   return findLumen(maskOf(tube), near, {}, monitor);
 }
