@@ -3,7 +3,7 @@
  * @brief Closes a gray-value object in an image by a ball of any radius.
  *
  * The first stage from a CT volume to a B-spline model: the object is what lies at or above an iso
- * value (by default Otsu's threshold, moved halfway between the two materials), of it the largest
+ * value (by default halfway between the two materials), of it the largest
  * component (connectivity 26). It is closed by a ball: dilated and then eroded. With a radius as
  * large as the object's lumen is wide, holes, pits and the lumen itself fill, and what is left is a
  * solid whose surface is the fiber's outer wall with caps over its open ends (Mosbach et al.,
@@ -64,8 +64,9 @@ public:
   ///@}
 
   ///@{
-  /// Find the iso value: Otsu's threshold, moved halfway between the mean gray values of the voxels
-  /// inside the object and outside of it, where the surface of a blurred edge lies. Default on.
+  /// Find the iso value: halfway between the gray values of the voxels deep
+  /// inside the object and outside of it, from Otsu's threshold on: there a blurred edge lies.
+  /// Default on.
   vtkSetMacro(AutoIsoValue, bool);
   vtkGetMacro(AutoIsoValue, bool);
   vtkBooleanMacro(AutoIsoValue, bool);

@@ -118,10 +118,6 @@ int vtkFiberEnds::RequestData(
   bsr::triangleMeshTo(ends->Surface, output);
   attach(*ends, output);
   rimsTo(*ends, rims);
-  if (!ends->Note.empty())
-  {
-    vtkWarningMacro(<< ends->Note);
-  }
   return 1;
 }
 

@@ -333,7 +333,7 @@ int vtkFiberReconstruction::RequestData(
   copyField(closingNumbers, report, {"IsoValue", "ClosingRadius", "BettiNumbers"});
   if (this->OpenEnds == 0)
   {
-    copyField(ends->GetOutputDataObject(0)->GetFieldData(), report, {"OpenEnds"});
+    copyField(ends->GetOutputDataObject(0)->GetFieldData(), report, {"OpenEnds", "EndsNote"});
   }
   return 1;
 }

@@ -14,7 +14,8 @@
  * - 0 model: the spline model (see vtkBSplineG1Fit, port 0);
  * - 1 control net (vtkBSplineG1Fit, port 1);
  * - 2 report: a row a patch (vtkBSplineG1Fit, port 2); its field data also carries `StageNames` and
- *   `StageSeconds`, `IsoValue`, `ClosingRadius`, `BettiNumbers`, `OpenEnds`;
+ *   `StageSeconds`, `IsoValue`, `ClosingRadius`, `BettiNumbers`, `OpenEnds`, `EndsNote` (openings
+ * that were left out, and why);
  * - 3 closed surface with the cell array `EndRegion`;
  * - 4 quad layout;
  * - 5 raw surface with the point arrays `Depth`, `Side`, `QuadId`, `UV`, `QuadDistance`.
@@ -59,8 +60,8 @@ public:
 
   ///@{
   /**
-   * Gray value of the object's surface. With AutoIsoValue (default 1) it is found from the
-   * histogram (Otsu) and IsoValue is ignored.
+   * Gray value of the object's surface. With AutoIsoValue (default 1) it is found as in
+   * vtkClosing and IsoValue is ignored.
    */
   vtkSetMacro(IsoValue, double);
   vtkGetMacro(IsoValue, double);

@@ -190,6 +190,20 @@ TEST(Lumen, ClosedEndsAreNoMouths)
   EXPECT_TRUE(lumen->Mouths.empty());
 }
 
+TEST(Lumen, AHoleAsWideAsTheLumenIsNoEnd)
+{
+  Tube tube;
+  tube.HoleRadius = 6.5;
+  const auto lumen = lumenOf(tube);
+  ASSERT_TRUE(lumen);
+  EXPECT_TRUE(lumen->Found);
+  ASSERT_EQ(lumen->Mouths.size(), 2u);
+  for (const LumenMouth& m : lumen->Mouths)
+  {
+    EXPECT_GT(std::abs(m.Direction.x()), 0.9);
+  }
+}
+
 TEST(Lumen, ASolidObjectHasNone)
 {
   const Int3 dims{40, 40, 40};
