@@ -423,7 +423,10 @@ Result<G1FitResult> fitBody(
   fit = Fitter(points, quads, options, second).run();
   if (fit)
   {
-    fit->Message = why + " Its ends were kept closed.";
+    fit->Message =
+      fit->Shells.size() > 1
+        ? "The ends were kept closed: with open ends there is no sound inner wall (" + why + ")."
+        : why + " Its ends were kept closed.";
   }
   return fit;
 }
