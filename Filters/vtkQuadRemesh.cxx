@@ -2,6 +2,7 @@
 
 #include "Adapters/BSRMeshAdapter.h"
 #include "Adapters/BSRMonitor.h"
+#include "Adapters/BSRSurfaceAdapter.h"
 #include "Layout/QuadRemesh.h"
 
 #include <vtkCellData.h>
@@ -73,32 +74,67 @@ void surfaceTo(const bsr::PartitionedSurface& surface, vtkPolyData* output)
   }
 }
 
+using Named = std::vector<std::pair<const char*, double>>;
+
+/// One tuple of named components.
+void addNamed(vtkFieldData* field, const char* name, const Named& values)
+{
+  vtkNew<vtkDoubleArray> a;
+  a->SetName(name);
+  a->SetNumberOfComponents(static_cast<int>(values.size()));
+  a->SetNumberOfTuples(1);
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    a->SetComponentName(static_cast<vtkIdType>(i), values[i].first);
+    a->SetComponent(0, static_cast<int>(i), values[i].second);
+  }
+  field->AddArray(a);
+}
+
+void reportRepairs(const bsr::RepairReport& r, vtkFieldData* field)
+{
+  const auto number = [](bsr::Index n) { return static_cast<double>(n); };
+  addNamed(field, "Repairs",
+    {{"MergedPoints", number(r.MergedPoints)}, {"DegenerateFaces", number(r.DegenerateFaces)},
+      {"DuplicateFaces", number(r.DuplicateFaces)}, {"TurnedFaces", number(r.TurnedFaces)},
+      {"SplitVertices", number(r.SplitVertices)}, {"CutEdges", number(r.CutEdges)},
+      {"Specks", number(r.Specks)}});
+}
+
 void report(const bsr::QuadLayout& layout, vtkFieldData* field)
 {
   const bsr::LayoutReport& r = layout.Report;
   bsr::addField(field, "Irregular", r.Irregular);
+  bsr::addField(
+    field, "ValenceCounts", std::vector<double>(r.ByValence.begin(), r.ByValence.end()));
   bsr::addField(field, "EulerCharacteristic", r.Euler);
+  bsr::addField(field, "BoundaryLoops", r.BoundaryLoops);
+  bsr::addField(field, "Components", r.Components);
+  bsr::addField(field, "MinimumQuads", layout.MinimumQuads);
   bsr::addField(field, "Hausdorff", layout.Distance.Maximum);
   bsr::addField(field, "MeanDistance", layout.Distance.Mean);
   bsr::addField(field, "MinScaledJacobian", r.MinJacobian);
+  bsr::addField(field, "MeanScaledJacobian", r.MeanJacobian);
+  bsr::addField(field, "FlippedQuads", r.Flipped);
   bsr::addField(field, "MeanAngleDeviation", r.MeanAngleDeviation);
+  bsr::addField(field, "MaxAngleDeviation", r.MaxAngleDeviation);
   std::vector<double> stages;
   for (bsr::LayoutStage s : layout.Stages)
   {
     stages.push_back(static_cast<double>(s));
   }
   bsr::addField(field, "LayoutStage", stages);
-  const bsr::RepairReport& repairs = layout.Repairs;
-  bsr::addField(field, "Repairs",
-    {static_cast<double>(repairs.MergedPoints), static_cast<double>(repairs.DegenerateFaces),
-      static_cast<double>(repairs.DuplicateFaces), static_cast<double>(repairs.TurnedFaces),
-      static_cast<double>(repairs.SplitVertices)});
+  const bsr::LayoutSeconds& s = layout.Seconds;
+  addNamed(field, "StageSeconds",
+    {{"Repair", s.Repair}, {"Decimation", s.Decimation}, {"Layout", s.Layout},
+      {"Measure", s.Measure}});
+  reportRepairs(layout.Repairs, field);
 }
 } // namespace
 
 vtkQuadRemesh::vtkQuadRemesh()
 {
-  this->SetNumberOfOutputPorts(2);
+  this->SetNumberOfOutputPorts(3);
 }
 
 int vtkQuadRemesh::RequestData(
@@ -108,16 +144,30 @@ int vtkQuadRemesh::RequestData(
   vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
   vtkPolyData* surface = vtkPolyData::GetData(outputVector, 1);
   output->Initialize();
+  vtkPolyData* repairs = vtkPolyData::GetData(outputVector, 2);
   surface->Initialize();
+  repairs->Initialize();
   const auto start = std::chrono::steady_clock::now();
-  auto mesh = bsr::triangleMeshFrom(input, this->RegionArray);
+  auto mesh = bsr::surfaceFrom(input, this->RegionArray);
   if (!mesh)
   {
     vtkErrorMacro(<< mesh.status().message());
     return 0;
   }
-  const bool regions = !mesh->Region.empty();
+  const bool regions = !mesh->Mesh.Region.empty();
   bsr::QuadRemeshOptions options;
+  if (this->Sizing == SIZE_BY_ARRAY)
+  {
+    auto values = bsr::pointArrayFrom(mesh->Triangles, this->SizeArray);
+    if (!values)
+    {
+      vtkErrorMacro(<< values.status().message());
+      return 0;
+    }
+    options.SizeField = std::move(*values);
+  }
+  options.Sizing = static_cast<bsr::QuadSizing>(this->Sizing);
+  options.SmallestComponent = this->SmallestComponent;
   options.NumberOfQuads = this->NumberOfQuads;
   options.FeatureAngle = this->FeatureAngle;
   options.Seed = this->Seed;
@@ -125,7 +175,7 @@ int vtkQuadRemesh::RequestData(
   options.Eigenfunction = this->Eigenfunction;
   options.Persistence = this->Persistence;
   bsr::AlgorithmMonitor monitor(this);
-  auto layout = bsr::quadRemesh(*mesh, options, monitor);
+  auto layout = bsr::quadRemesh(mesh->Mesh, options, monitor);
   if (!layout)
   {
     return bsr::notDelivered(this, layout.status());
@@ -143,6 +193,8 @@ int vtkQuadRemesh::RequestData(
     reportMorse(*layout, output->GetFieldData());
   }
   surfaceTo(layout->Surface, surface);
+  repairs->ShallowCopy(mesh->Triangles);
+  addArray<vtkUnsignedCharArray>(repairs->GetCellData(), "Repair", layout->Repairs.Faces);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   bsr::addField(output->GetFieldData(), "Seconds", seconds.count());
   return 1;
@@ -154,6 +206,9 @@ void vtkQuadRemesh::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Method: " << this->Method << "\n";
   os << indent << "NumberOfQuads: " << this->NumberOfQuads << "\n";
   os << indent << "FeatureAngle: " << this->FeatureAngle << "\n";
+  os << indent << "Sizing: " << this->Sizing << "\n";
+  os << indent << "SizeArray: " << this->SizeArray << "\n";
+  os << indent << "SmallestComponent: " << this->SmallestComponent << "\n";
   os << indent << "Seed: " << this->Seed << "\n";
   os << indent << "Eigenfunction: " << this->Eigenfunction << "\n";
   os << indent << "Persistence: " << this->Persistence << "\n";

@@ -18,21 +18,29 @@
  * noise is cancelled by persistence, degenerate cells are mended. Boundaries are kept; regions and
  * sharp edges are not followed.
  *
- * Region borders of the cell array RegionArray become closed rows of quad edges that follow the
- * border; so do boundaries and edges sharper than FeatureAngle.
+ * Region borders of the array RegionArray (of cells or points) become closed rows of quad edges
+ * that follow the border; so do boundaries and edges sharper than FeatureAngle.
  *
- * Output: quads (vtkPolyData) and
+ * Any surface is taken: polygons and strips are triangulated, faces that name a point twice or are
+ * repeated are dropped, edges of three or more faces and vertices of several fans are taken apart,
+ * coincident points at boundaries are merged, faces are oriented alike, and components smaller than
+ * SmallestComponent are dropped. Each repair is counted in `Repairs` and shown on output port 2.
+ *
+ * Output port 0: quads (vtkPolyData) and
  * - cell array `ScaledJacobian` (Float64): worst corner of each quad, 1 for a rectangle;
  * - cell array RegionArray (Int32), where the input has it;
  * - point array `Valence` (Int32): edges at each vertex;
- * - field arrays `Irregular` (interior vertices of a valence other than 4), `EulerCharacteristic`,
- *   `Hausdorff` (largest distance between surface and layout, both ways, in world units),
- *   `MeanDistance`, `MinScaledJacobian`, `MeanAngleDeviation` (degrees), `LayoutStage` (per
- *   component: 0 parametrized, 1 paired triangles, 2 Morse-Smale), `Repairs` (merged points,
- * degenerate, repeated and turned faces, split vertices), `Seconds`; method MORSE_SMALE, per
- * component: `EigenfunctionTaken` (place in the spectrum), `Eigenvalue`, `Minima`, `Saddles`,
- * `Maxima`, `MorseCells` (before mending), `CancelledPairs`, `CellSubdivisions` (1: every cell was
- * cut in 2 x 2, as there was no valid layout without).
+ * - field arrays `Irregular` (interior vertices of a valence other than 4), `ValenceCounts` (10
+ *   components: interior vertices of valence 0, 1 ... 8, 9 and more), `EulerCharacteristic`,
+ *   `BoundaryLoops`, `Components`, `MinimumQuads` (a lower bound by topology), `Hausdorff` (largest
+ *   distance between surface and layout, both ways, in world units), `MeanDistance`,
+ *   `MinScaledJacobian`, `MeanScaledJacobian`, `FlippedQuads`, `MeanAngleDeviation` and
+ *   `MaxAngleDeviation` (degrees), `LayoutStage` (per component: 0 parametrized, 1 paired
+ *   triangles, 2 Morse-Smale), `StageSeconds` (Repair, Decimation, Layout, Measure), `Repairs`
+ *   (MergedPoints, DegenerateFaces, DuplicateFaces, TurnedFaces, SplitVertices, CutEdges, Specks),
+ *   `Seconds`; method MORSE_SMALE, per component: `EigenfunctionTaken` (place in the spectrum),
+ *   `Eigenvalue`, `Minima`, `Saddles`, `Maxima`, `MorseCells` (before mending), `CancelledPairs`,
+ *   `CellSubdivisions` (1: every cell was cut in 2 x 2, as there was no valid layout without).
  *
  * Output port 1: the triangle surface the layout was found on (repaired and decimated;
  * MORSE_SMALE: remeshed evenly and cut along the paths), and with MORSE_SMALE
@@ -40,12 +48,17 @@
  * - point array `Eigenfunction` (Float64): the function, largest absolute value 1;
  * - point array `Critical` (UInt8): 0 regular, 1 minimum, 2 saddle, 3 maximum.
  *
+ * Output port 2: the triangles of the input and the cell array `Repair` (UInt8), a sum of: 1
+ * dropped, names a point twice; 2 dropped, repeated; 4 turned over; 8 a corner merged with a
+ * coincident point; 16 a corner got a point of its own; 32 at an edge of three or more faces; 64
+ * dropped with its component; 0: untouched.
+ *
  * Reference: H. Mosbach et al., paper 000, section 2; D. Bommes, H. Zimmer and L. Kobbelt,
  * Mixed-integer quadrangulation, ACM Trans. Graph. 28 (2009); J. Huang et al., QuadriFlow, Comput.
  * Graph. Forum 37 (2018); S. Dong et al., Spectral surface quadrangulation, SIGGRAPH 2006; J. W.
  * Branch et al., paper 003, section 3.
  *
- * @warning Edges of three or more triangles and one-sided surfaces are errors.
+ * @warning One-sided surfaces, surfaces without area and triangles of non-finite points are errors.
  * @sa vtkPartitionToQuads vtkBSplineG1Fit
  */
 
@@ -71,6 +84,13 @@ public:
     MORSE_SMALE = 1
   };
 
+  enum Sizings
+  {
+    UNIFORM = 0,
+    SIZE_BY_CURVATURE = 1,
+    SIZE_BY_ARRAY = 2
+  };
+
   ///@{
   /// How the layout is found. Default: FIELD_ALIGNED.
   vtkSetClampMacro(Method, int, FIELD_ALIGNED, MORSE_SMALE);
@@ -89,6 +109,27 @@ public:
   /// none.
   vtkSetMacro(FeatureAngle, double);
   vtkGetMacro(FeatureAngle, double);
+  ///@}
+
+  ///@{
+  /// How large quads are where: alike (smaller only where the surface bends over the length of a
+  /// quad), by the root of the radius of curvature, or in proportion to the point array SizeArray.
+  /// Default: UNIFORM.
+  vtkSetClampMacro(Sizing, int, UNIFORM, SIZE_BY_ARRAY);
+  vtkGetMacro(Sizing, int);
+  ///@}
+
+  ///@{
+  /// Point array of relative sides of quads, above 0, for SIZE_BY_ARRAY. Default "" (none).
+  vtkSetMacro(SizeArray, std::string);
+  vtkGetMacro(SizeArray, std::string);
+  ///@}
+
+  ///@{
+  /// Components of less area than so many mean quads are dropped as specks (never the largest).
+  /// Default 0.01; 0: only those without area.
+  vtkSetMacro(SmallestComponent, double);
+  vtkGetMacro(SmallestComponent, double);
   ///@}
 
   ///@{
@@ -112,8 +153,8 @@ public:
   ///@}
 
   ///@{
-  /// Cell array of regions whose borders become rows of quad edges, used if the input has it.
-  /// Default "EndRegion".
+  /// Cell or point array of regions whose borders become rows of quad edges, used if the input has
+  /// it. Default "EndRegion".
   vtkSetMacro(RegionArray, std::string);
   vtkGetMacro(RegionArray, std::string);
   ///@}
@@ -130,6 +171,9 @@ private:
   int Method = FIELD_ALIGNED;
   int NumberOfQuads = 500;
   double FeatureAngle = 180.0;
+  int Sizing = UNIFORM;
+  std::string SizeArray;
+  double SmallestComponent = 0.01;
   int Seed = 0;
   int Eigenfunction = 0;
   double Persistence = 0.01;

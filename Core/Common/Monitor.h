@@ -35,4 +35,15 @@ private:
   double From;
   double To;
 };
+
+/// Passes cancellation on, but no progress: for steps that are repeated an unknown number of times.
+class QuietMonitor : public Monitor
+{
+public:
+  explicit QuietMonitor(Monitor& parent) : Parent(parent) {}
+  bool cancelled() override { return this->Parent.cancelled(); }
+
+private:
+  Monitor& Parent;
+};
 } // namespace bsr

@@ -211,6 +211,8 @@ private:
         this->problem("a vertex has only two quads");
       }
       this->Report.Irregular += this->Boundary[v] == 0 && edges != 4;
+      auto& histogram = this->Report.ByValence;
+      histogram[std::min<std::size_t>(edges, histogram.size() - 1)] += this->Boundary[v] == 0;
       this->Report.MaxValence = std::max(this->Report.MaxValence, edges);
     }
   }
@@ -267,6 +269,7 @@ private:
         const Vec3 f = this->Mesh.Points[c[(k + 3) % 4]] - this->Mesh.Points[c[k]];
         const double angle = std::atan2(e.cross(f).norm(), e.dot(f)) * 180.0 / M_PI;
         r.MeanAngleDeviation += std::abs(angle - 90.0);
+        r.MaxAngleDeviation = std::max(r.MaxAngleDeviation, std::abs(angle - 90.0));
       }
     }
     const auto n = static_cast<double>(this->Mesh.Quads.size());
@@ -338,8 +341,8 @@ double scaledJacobian(const QuadMesh& mesh, Index quad)
   return scaledJacobian(mesh.Points[q[0]], mesh.Points[q[1]], mesh.Points[q[2]], mesh.Points[q[3]]);
 }
 
-LayoutDistance layoutDistance(
-  const QuadMesh& mesh, const TriangleSurface& s, const ReferenceSurface& reference)
+LayoutDistance layoutDistance(const QuadMesh& mesh, const TriangleSurface& s,
+  const ReferenceSurface& reference, const std::vector<Vec3>& samples)
 {
   // The quads as a grid of n x n bilinear cells, two triangles each.
   constexpr int n = 4;
@@ -392,7 +395,20 @@ LayoutDistance layoutDistance(
         back[v] = s.Virtual[v] ? 0.0 : std::sqrt(tree.nearest(s.Points[v]).SquaredDistance);
       }
     });
+  const auto worst = parallelReduce(
+    0, static_cast<std::int64_t>(samples.size()), 256, 0.0,
+    [&](std::int64_t first, std::int64_t last)
+    {
+      double most = 0.0;
+      for (std::int64_t i = first; i < last; ++i)
+      {
+        most = std::max(most, tree.nearest(samples[i]).SquaredDistance);
+      }
+      return most;
+    },
+    [](double a, double b) { return std::max(a, b); });
   LayoutDistance d;
+  d.Maximum = std::sqrt(worst);
   double total = 0.0;
   for (std::size_t v = 0; v < back.size(); ++v)
   {

@@ -39,8 +39,11 @@ struct LayoutReport
   double MinJacobian = 0.0;
   double MeanJacobian = 0.0;
   double MeanAngleDeviation = 0.0; ///< of corner angles from 90 degrees
-  std::vector<int> Valence;        ///< edges at each point
-  std::vector<double> Jacobian;    ///< scaled Jacobian of each quad
+  double MaxAngleDeviation = 0.0;
+  /// Interior vertices by valence; the last holds all valences from there up.
+  std::array<int, 10> ByValence{};
+  std::vector<int> Valence;     ///< edges at each point
+  std::vector<double> Jacobian; ///< scaled Jacobian of each quad
 };
 
 /**
@@ -61,6 +64,7 @@ struct LayoutDistance
   double Maximum = 0.0;
   double Mean = 0.0; ///< from the surface to the layout
 };
-LayoutDistance layoutDistance(
-  const QuadMesh& mesh, const TriangleSurface& s, const ReferenceSurface& reference);
+/// `samples` are more points of the surface, for the maximum.
+LayoutDistance layoutDistance(const QuadMesh& mesh, const TriangleSurface& s,
+  const ReferenceSurface& reference, const std::vector<Vec3>& samples = {});
 } // namespace bsr

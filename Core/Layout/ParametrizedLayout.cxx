@@ -126,7 +126,7 @@ Result<LayoutDraft> parametrizedLayout(const TriangleSurface& s, const Reference
         cell *= 0.93;
         continue;
       }
-      Monitor quiet;
+      QuietMonitor quiet(monitor);
       if (Status status = relaxLayout(draft, reference, 40, quiet); !status)
       {
         return status;

@@ -6,6 +6,7 @@
 #include "Mesh/Decimate.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <memory>
 
@@ -36,6 +37,10 @@ Status checkOptions(const QuadRemeshOptions& o)
   {
     return Status::invalidParameter("Persistence must be a share of the range from 0 to below 1.");
   }
+  if (!(o.SmallestComponent >= 0.0))
+  {
+    return Status::invalidParameter("SmallestComponent must be 0 (none is dropped) or more.");
+  }
   return Status::ok();
 }
 
@@ -63,13 +68,59 @@ Sizing::Field sizeField(const TriangleMesh& mesh, const QuadRemeshOptions& o)
   {
     return {};
   }
-  std::vector<std::array<Index, 3>> points(mesh.Points.size());
-  for (std::size_t i = 0; i < points.size(); ++i)
+  std::vector<Vec3> points;
+  std::vector<std::array<Index, 3>> corners;
+  std::vector<double> value;
+  for (std::size_t i = 0; i < mesh.Points.size(); ++i)
   {
-    points[i].fill(static_cast<Index>(i));
+    if (mesh.Points[i].allFinite()) // others are used by no triangle
+    {
+      corners.emplace_back().fill(static_cast<Index>(points.size()));
+      points.push_back(mesh.Points[i]);
+      value.push_back(o.SizeField[i]);
+    }
   }
-  const auto tree = std::make_shared<TriangleTree>(mesh.Points, std::move(points));
-  return [tree, &o](const Vec3& p) { return o.SizeField[tree->nearest(p).Triangle]; };
+  const auto tree = std::make_shared<TriangleTree>(std::move(points), std::move(corners));
+  return [tree, value = std::move(value)](const Vec3& p)
+  { return value[tree->nearest(p).Triangle]; };
+}
+
+/// Wall time since the last call.
+class Clock
+{
+public:
+  double lap()
+  {
+    const auto now = std::chrono::steady_clock::now();
+    const std::chrono::duration<double> seconds = now - this->Last;
+    this->Last = now;
+    return seconds.count();
+  }
+
+private:
+  std::chrono::steady_clock::time_point Last = std::chrono::steady_clock::now();
+};
+
+int boundaryLoops(const TriangleSurface& s)
+{
+  return static_cast<int>(std::count(s.Virtual.begin(), s.Virtual.end(), 1));
+}
+
+/// Some points of the surface as it came, so that the distance is not to the decimated one only.
+std::vector<Vec3> samplesOf(const TriangleSurface& s)
+{
+  constexpr std::size_t most = 40000;
+  const std::size_t stride = s.Points.size() / most + 1;
+  std::vector<Vec3> samples;
+  samples.reserve(s.Points.size() / stride + 1);
+  for (std::size_t v = 0; v < s.Points.size(); v += stride)
+  {
+    if (!s.Virtual[v])
+    {
+      samples.push_back(s.Points[v]);
+    }
+  }
+  return samples;
 }
 
 /// Bending of the surface, measured on triangles of a fifth of a quad.
@@ -77,7 +128,7 @@ Result<Sizing> sizingOf(TriangleSurface s, const ReferenceSurface& reference, in
   QuadSizing kind, const Sizing::Field& field, Monitor& monitor)
 {
   const double cell = std::sqrt(s.area() / quads);
-  Monitor quiet;
+  QuietMonitor quiet(monitor);
   if (monitor.cancelled())
   {
     return Status::cancelled();
@@ -227,6 +278,22 @@ void append(QuadMesh& all, const QuadMesh& part)
 }
 } // namespace
 
+int leastQuads(int euler, int boundaryLoops)
+{
+  if (boundaryLoops > 0)
+  {
+    const double border = std::max(3.0 * boundaryLoops, -0.8 * euler);
+    return std::max(1, static_cast<int>(std::ceil(0.5 * border - euler)));
+  }
+  if (euler > 0)
+  {
+    return 6;
+  }
+  const double points =
+    std::max<double>(-euler, std::ceil(0.5 * (5.0 + std::sqrt(25.0 - 16.0 * euler))));
+  return static_cast<int>(points) - euler;
+}
+
 Result<QuadLayout> quadRemesh(
   const TriangleMesh& mesh, const QuadRemeshOptions& options, Monitor& monitor)
 {
@@ -240,12 +307,16 @@ Result<QuadLayout> quadRemesh(
   }
   const Sizing::Field field = sizeField(mesh, options);
   QuadLayout layout;
+  Clock clock;
   const bool morse = options.Method == LayoutMethod::MorseSmale;
   BuildSurfaceOptions building;
   building.FeatureAngle = morse ? 180.0 : options.FeatureAngle;
+  building.SmallestShare = options.SmallestComponent / options.NumberOfQuads;
+  SubMonitor repairing(monitor, 0.0, 0.1);
+  SubMonitor rest(monitor, 0.1, 1.0);
   auto surfaces =
-    morse ? buildSurfaces({mesh.Points, mesh.Triangles, {}}, building, layout.Repairs, monitor)
-          : buildSurfaces(mesh, building, layout.Repairs, monitor);
+    morse ? buildSurfaces({mesh.Points, mesh.Triangles, {}}, building, layout.Repairs, repairing)
+          : buildSurfaces(mesh, building, layout.Repairs, repairing);
   if (!surfaces)
   {
     return surfaces.status();
@@ -255,14 +326,17 @@ Result<QuadLayout> quadRemesh(
   {
     total += s.area();
   }
+  layout.Seconds.Repair = clock.lap();
   double done = 0.0;
   for (TriangleSurface& s : *surfaces)
   {
     const double share = s.area() / total;
-    SubMonitor part(monitor, done, done + share);
+    SubMonitor part(rest, done, done + share);
     done += share;
     const int quads = std::max(24, static_cast<int>(std::lround(share * options.NumberOfQuads)));
     const int euler = s.eulerCharacteristic();
+    layout.MinimumQuads += leastQuads(euler, boundaryLoops(s));
+    const std::vector<Vec3> samples = samplesOf(s);
     SubMonitor decimating(part, 0.0, 0.5);
     DecimateOptions decimation;
     decimation.Target = std::max(20000, 60 * quads);
@@ -272,6 +346,7 @@ Result<QuadLayout> quadRemesh(
     {
       return status;
     }
+    layout.Seconds.Decimation += clock.lap();
     const ReferenceSurface reference(s);
     SubMonitor laying(part, 0.5, 0.95);
     auto sizing = sizingOf(s, reference, quads, options.Sizing, field, monitor);
@@ -290,6 +365,7 @@ Result<QuadLayout> quadRemesh(
     {
       return draft.status();
     }
+    layout.Seconds.Layout += clock.lap();
     const LayoutReport report = checkLayout(draft->Mesh);
     if (!report.Valid || report.Euler != euler)
     {
@@ -297,13 +373,16 @@ Result<QuadLayout> quadRemesh(
                             (report.Valid ? std::string("the topology changed") : report.Problem) +
                             "; try another NumberOfQuads or Seed.");
     }
-    const LayoutDistance d = layoutDistance(draft->Mesh, s, reference);
+    const LayoutDistance d = layoutDistance(draft->Mesh, s, reference, samples);
     layout.Distance.Maximum = std::max(layout.Distance.Maximum, d.Maximum);
     layout.Distance.Mean += share * d.Mean;
     layout.Stages.push_back(stage);
     append(layout.Mesh, draft->Mesh);
+    layout.Seconds.Measure += clock.lap();
   }
   layout.Report = checkLayout(layout.Mesh);
+  monitor.progress(1.0);
+  layout.Seconds.Measure += clock.lap();
   return layout;
 }
 } // namespace bsr

@@ -24,8 +24,10 @@ struct QuadRemeshOptions
   int Seed = 0;                ///< varies what is arbitrary; the same seed gives the same layout
   QuadSizing Sizing = QuadSizing::Uniform;
   std::vector<double> SizeField; ///< QuadSizing::Array: relative side per point of the mesh, > 0
-  int Eigenfunction = 0;         ///< Morse-Smale: place in the spectrum, from 1; 0: automatic
-  double Persistence = 0.01;     ///< Morse-Smale: noise, as a share of the function's range
+  /// Components of less area than so many mean quads are dropped as specks; 0: none is.
+  double SmallestComponent = 0.01;
+  int Eigenfunction = 0;     ///< Morse-Smale: place in the spectrum, from 1; 0: automatic
+  double Persistence = 0.01; ///< Morse-Smale: noise, as a share of the function's range
 };
 
 /// Which road gave the layout of a component.
@@ -36,6 +38,15 @@ enum class LayoutStage
   MorseSmale = 2    ///< Morse-Smale complex of an eigenfunction
 };
 
+/// Seconds of wall time, by stage, all components together.
+struct LayoutSeconds
+{
+  double Repair = 0.0;
+  double Decimation = 0.0;
+  double Layout = 0.0;  ///< sizing, field, map, extraction, relaxation
+  double Measure = 0.0; ///< checks and distances
+};
+
 struct QuadLayout
 {
   QuadMesh Mesh;
@@ -43,11 +54,20 @@ struct QuadLayout
   LayoutDistance Distance;         ///< in world units, to the input
   std::vector<LayoutStage> Stages; ///< per component of the input
   RepairReport Repairs;
+  LayoutSeconds Seconds;
+  int MinimumQuads = 0;           ///< leastQuads of all components together
   std::vector<MorseReport> Morse; ///< per component, method MorseSmale only
   /// The surface the layout was found on. Method MorseSmale: cut along the paths of the complex;
   /// FieldAligned: repaired and decimated, without cells and function.
   PartitionedSurface Surface;
 };
+
+/**
+ * A lower bound, seldom reached, of the quads of a component: 6 for a ball. Closed surfaces: no
+ * edge twice (Hartsfield and Ringel 1989) and at most 8 edges a vertex, where the sum of 4 -
+ * valence is four times the Euler characteristic; open ones: at least three edges a loop, too.
+ */
+int leastQuads(int euler, int boundaryLoops);
 
 /**
  * A coarse pure-quad layout of a triangle surface.

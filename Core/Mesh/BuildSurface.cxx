@@ -178,6 +178,10 @@ Result<std::vector<TriangleSurface>> buildSurfaces(const TriangleMesh& mesh,
     return repaired.status();
   }
   const ManifoldMesh& m = *repaired;
+  if (monitor.cancelled())
+  {
+    return Status::cancelled();
+  }
   const std::vector<double> area = componentAreas(m);
   const double total = std::accumulate(area.begin(), area.end(), 0.0);
   if (!(total > 0.0) || !std::isfinite(total))

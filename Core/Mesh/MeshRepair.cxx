@@ -37,7 +37,10 @@ public:
   Result<ManifoldMesh> run(Monitor& monitor)
   {
     this->dropDegenerate();
-    this->match();
+    if (!monitor.cancelled())
+    {
+      this->match();
+    }
     monitor.progress(0.3);
     if (monitor.cancelled())
     {
@@ -63,6 +66,10 @@ public:
     {
       return Status::invalidInput("The surface is one-sided (a Moebius strip); it has no layout. "
                                   "Cut it open first.");
+    }
+    if (monitor.cancelled())
+    {
+      return Status::cancelled();
     }
     this->splitFans();
     return std::move(this->M);

@@ -13,20 +13,28 @@ namespace
 class Remesher
 {
 public:
-  Remesher(TriangleSurface& s, const ReferenceSurface& reference, const EdgeLength& length)
-      : S(s), Reference(reference), Wanted(s.Points.size())
+  Remesher(TriangleSurface& s, const ReferenceSurface& reference, Monitor& monitor)
+      : S(s), Reference(reference), Ask(monitor), Wanted(s.Points.size())
   {
-    parallelFor(0, s.vertices(), 256,
+  }
+
+  /// One round; false when cancelled.
+  bool run(const EdgeLength& length)
+  {
+    const bool go = parallelForUntilCancelled(0, this->S.vertices(), 256, this->Ask,
       [&](std::int64_t first, std::int64_t last)
       {
         for (std::int64_t v = first; v < last; ++v)
         {
-          this->Wanted[v] = length(s.Points[v]);
+          this->Wanted[v] = length(this->S.Points[v]);
         }
       });
+    return go && this->splitLong() && this->collapseShort() && this->flipToRegular() &&
+           this->relax() && this->relax();
   }
 
-  void splitLong()
+private:
+  bool splitLong()
   {
     for (int pass = 0; pass < 12; ++pass)
     {
@@ -34,6 +42,10 @@ public:
       const auto count = static_cast<Index>(this->S.Vertex.size());
       for (Index h = 0; h < count; ++h)
       {
+        if (this->stopped(h))
+        {
+          return false;
+        }
         if (this->S.Vertex[h] >= 0 && h < this->S.Opposite[h] && this->real(h) &&
             this->relative(h) > 4.0 / 3.0 && this->longestAround(h))
         {
@@ -47,17 +59,26 @@ public:
       }
       if (!any)
       {
-        break;
+        return true;
       }
-      this->flipToRegular(); // fans of needles would grow vertices of ever more edges
+      // Fans of needles would grow vertices of ever more edges.
+      if (!this->flipToRegular())
+      {
+        return false;
+      }
     }
+    return true;
   }
 
-  void collapseShort()
+  bool collapseShort()
   {
     const auto count = static_cast<Index>(this->S.Vertex.size());
     for (Index e = 0; e < count; ++e)
     {
+      if (this->stopped(e))
+      {
+        return false;
+      }
       if (this->S.Vertex[e] < 0 || !this->real(e) || this->relative(e) >= 0.8)
       {
         continue;
@@ -77,13 +98,18 @@ public:
         this->S.collapse(e, x);
       }
     }
+    return true;
   }
 
-  void flipToRegular()
+  bool flipToRegular()
   {
     const auto count = static_cast<Index>(this->S.Vertex.size());
     for (Index h = 0; h < count; ++h)
     {
+      if (this->stopped(h))
+      {
+        return false;
+      }
       if (this->S.Vertex[h] < 0 || h > this->S.Opposite[h] || !this->real(h) || !this->S.canFlip(h))
       {
         continue;
@@ -96,13 +122,14 @@ public:
         this->S.flip(h);
       }
     }
+    return true;
   }
 
-  void relax(Monitor& monitor, Status& status)
+  bool relax()
   {
     TriangleSurface& s = this->S;
     std::vector<Vec3> moved = s.Points;
-    parallelFor(0, s.vertices(), 256,
+    const bool go = parallelForUntilCancelled(0, s.vertices(), 256, this->Ask,
       [&](std::int64_t first, std::int64_t last)
       {
         for (std::int64_t v = first; v < last; ++v)
@@ -110,15 +137,12 @@ public:
           moved[v] = this->relaxed(static_cast<Index>(v));
         }
       });
-    if (monitor.cancelled())
-    {
-      status = Status::cancelled();
-      return;
-    }
     s.Points.swap(moved);
+    return go;
   }
 
-private:
+  /// Asked now and then in loops.
+  bool stopped(Index step) { return step % 8192 == 8191 && this->Ask.cancelled(); }
   bool real(Index h) const
   {
     return !this->S.Virtual[this->S.start(h)] && !this->S.Virtual[this->S.end(h)];
@@ -246,6 +270,7 @@ private:
 
   TriangleSurface& S;
   const ReferenceSurface& Reference;
+  Monitor& Ask;
   std::vector<double> Wanted; ///< edge length at each vertex
 };
 } // namespace
@@ -275,18 +300,15 @@ ReferenceSurface::ReferenceSurface(const TriangleSurface& s)
 Status remesh(TriangleSurface& s, const ReferenceSurface& reference, const EdgeLength& edgeLength,
   int iterations, Monitor& monitor)
 {
-  Status status;
-  for (int i = 0; i < iterations && status; ++i)
+  for (int i = 0; i < iterations; ++i)
   {
-    Remesher r(s, reference, edgeLength);
-    r.splitLong();
-    r.collapseShort();
-    r.flipToRegular();
-    r.relax(monitor, status);
-    r.relax(monitor, status);
+    if (!Remesher(s, reference, monitor).run(edgeLength))
+    {
+      return Status::cancelled();
+    }
     s.compact();
     monitor.progress((i + 1.0) / iterations);
   }
-  return status;
+  return Status::ok();
 }
 } // namespace bsr

@@ -26,7 +26,7 @@ using EdgeLength = std::function<double(const Vec3&)>;
 /**
  * Isotropic remeshing (Botsch and Kobbelt 2004): splits long edges, collapses short ones, flips
  * towards valence 6 and relaxes tangentially, each vertex on `reference`. Topology, creases
- * and holes stay. `s` is compact afterwards.
+ * and holes stay. `s` is compact afterwards; when cancelled it is left half done.
  */
 Status remesh(TriangleSurface& s, const ReferenceSurface& reference, const EdgeLength& edgeLength,
   int iterations, Monitor& monitor);

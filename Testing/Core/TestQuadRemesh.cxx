@@ -1,8 +1,11 @@
 #include "Layout/QuadRemesh.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
+#include <ctime>
 
 namespace
 {
@@ -263,6 +266,104 @@ TEST(QuadRemesh, BadInputIsOneClearError)
   QuadRemeshOptions options;
   options.NumberOfQuads = 0;
   EXPECT_EQ(failure(ring(10, 10, true), options).code(), StatusCode::InvalidParameter);
+}
+
+TEST(QuadRemesh, CanBeCancelledAnywhere)
+{
+  struct Stop : Monitor
+  {
+    explicit Stop(long left) : Left(left) {}
+    bool cancelled() override { return --this->Left < 0; }
+    long Left;
+  };
+  constexpr long many = 1000000;
+  Stop never(many);
+  ASSERT_TRUE(quadRemesh(ring(100, 40, true), {}, never));
+  const long calls = many - never.Left;
+  EXPECT_GT(calls, 50);
+  for (long i = 0; i < 10; ++i)
+  {
+    Stop stop(i * calls / 10);
+    auto layout = quadRemesh(ring(100, 40, true), {}, stop);
+    EXPECT_EQ(layout.status().code(), StatusCode::Cancelled) << i;
+  }
+}
+
+TEST(QuadRemesh, AsksForCancellationOften)
+{
+  // Processor time of the calling thread, which other programs do not lengthen; 0.2 s is meant, the
+  // bound leaves room for slow machines.
+  struct Watch : Monitor
+  {
+    static double now()
+    {
+      timespec t{};
+      clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+      return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+    }
+    bool cancelled() override
+    {
+      const double t = now();
+      this->Longest = std::max(this->Longest, t - this->Last);
+      this->Last = t;
+      return false;
+    }
+    void progress(double share) override
+    {
+      EXPECT_GE(share, this->Share - 1e-9);
+      EXPECT_LE(share, 1.0 + 1e-9);
+      this->Share = share;
+    }
+    double Last = now();
+    double Longest = 0.0;
+    double Share = 0.0;
+  } watch;
+  QuadRemeshOptions options;
+  options.NumberOfQuads = 300;
+  ASSERT_TRUE(quadRemesh(ring(400, 250, true), options, watch));
+  EXPECT_LT(watch.Longest, 0.8);
+  RecordProperty("LongestSilence", std::to_string(watch.Longest));
+  EXPECT_GT(watch.Share, 0.9);
+}
+
+TEST(QuadRemesh, ThreadsLeaveNoTrace)
+{
+  const QuadLayout a = remeshed(ring(400, 150, true), 200);
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const QuadLayout b = remeshed(ring(400, 150, true), 200);
+  ASSERT_EQ(a.Mesh.Quads, b.Mesh.Quads);
+  EXPECT_EQ(a.Mesh.Points, b.Mesh.Points);
+}
+
+TEST(QuadRemesh, UnitsDoNotMatter)
+{
+  TriangleMesh mesh = ring(80, 30, true);
+  const QuadLayout one = remeshed(mesh, 150);
+  for (const double scale : {std::ldexp(1.0, -30), std::ldexp(1.0, 30)})
+  {
+    TriangleMesh scaled = mesh;
+    for (Vec3& p : scaled.Points)
+    {
+      p = scale * p;
+    }
+    const QuadLayout other = remeshed(scaled, 150);
+    expectSound(other, 0, 0);
+    EXPECT_EQ(one.Mesh.Quads.size(), other.Mesh.Quads.size());
+  }
+  for (Vec3& p : mesh.Points)
+  {
+    p += Vec3(1e6, -2e6, 3e6);
+  }
+  expectSound(remeshed(mesh, 150), 0, 0);
+}
+
+TEST(QuadRemesh, LeastQuads)
+{
+  EXPECT_EQ(leastQuads(2, 0), 6);
+  EXPECT_EQ(leastQuads(0, 0), 5);
+  EXPECT_EQ(leastQuads(1, 1), 1);
+  EXPECT_EQ(leastQuads(0, 2), 3);
+  EXPECT_EQ(leastQuads(-100, 0), 200);
 }
 
 TEST(QuadRemesh, CancelsWithoutOutput)

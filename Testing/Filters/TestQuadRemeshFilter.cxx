@@ -4,6 +4,9 @@
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
 #include <vtkIntArray.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
@@ -11,6 +14,7 @@
 #include <vtkSphereSource.h>
 #include <vtkXMLPolyDataReader.h>
 
+#include <limits>
 #include <map>
 #include <set>
 
@@ -134,19 +138,101 @@ TEST(QuadRemeshFilter, SaysWhatIsWrong)
   EXPECT_TRUE(log.saidOnce("no triangles")) << log.text();
   EXPECT_EQ(remesh->GetOutput()->GetNumberOfCells(), 0);
   log.clear();
-  vtkNew<vtkPolyData> quad;
-  vtkNew<vtkPoints> points;
-  vtkNew<vtkCellArray> polys;
-  for (int i = 0; i < 4; ++i)
-  {
-    points->InsertNextPoint(i / 2, i % 2, 0);
-  }
-  polys->InsertNextCell({0, 1, 3, 2});
-  quad->SetPoints(points);
-  quad->SetPolys(polys);
-  remesh->SetInputData(quad);
+  vtkNew<vtkSphereSource> sphere;
+  remesh->SetInputConnection(sphere->GetOutputPort());
+  remesh->SetSizing(vtkQuadRemesh::SIZE_BY_ARRAY);
+  remesh->SetSizeArray("Sizes");
   remesh->Update();
-  EXPECT_TRUE(log.saidOnce("Triangulate")) << log.text();
+  EXPECT_TRUE(log.saidOnce("Sizes")) << log.text();
+  EXPECT_EQ(remesh->GetOutput()->GetNumberOfCells(), 0);
+}
+
+TEST(QuadRemeshFilter, TakesPolygonsStripsAndUnusedPoints)
+{
+  // A box: one strip of four sides, one quad, two triangles, a vertex cell and a point at infinity.
+  vtkNew<vtkPoints> points;
+  for (int i = 0; i < 8; ++i)
+  {
+    points->InsertNextPoint(i & 1, i >> 1 & 1, i >> 2);
+  }
+  points->InsertNextPoint(std::numeric_limits<double>::infinity(), 0, 0);
+  vtkNew<vtkCellArray> strips;
+  strips->InsertNextCell({0, 4, 1, 5, 3, 7, 2, 6, 0, 4});
+  vtkNew<vtkCellArray> polys;
+  polys->InsertNextCell({0, 1, 3, 2});
+  polys->InsertNextCell({4, 5, 7});
+  polys->InsertNextCell({4, 6, 7}); // the wrong way round
+  vtkNew<vtkCellArray> verts;
+  verts->InsertNextCell({3});
+  vtkNew<vtkPolyData> box;
+  box->SetPoints(points);
+  box->SetPolys(polys);
+  box->SetStrips(strips);
+  box->SetVerts(verts);
+  vtkNew<vtkQuadRemesh> remesh;
+  remesh->SetInputData(box);
+  remesh->SetNumberOfQuads(60);
+  ErrorLog log(remesh);
+  remesh->Update();
+  ASSERT_TRUE(log.empty()) << log.text();
+  expectClosedQuads(remesh->GetOutput());
+  EXPECT_EQ(fieldValue(remesh->GetOutput(), "EulerCharacteristic"), 2);
+  EXPECT_EQ(fieldValue(remesh->GetOutput(), "MinimumQuads"), 6);
+  vtkPolyData* repairs = remesh->GetOutput(2);
+  ASSERT_EQ(repairs->GetNumberOfCells(), 12);
+  vtkDataArray* repair = repairs->GetCellData()->GetArray("Repair");
+  ASSERT_TRUE(repair);
+  int turned = 0;
+  for (vtkIdType i = 0; i < 12; ++i)
+  {
+    turned += repair->GetTuple1(i) == 4.0;
+  }
+  vtkDataArray* counts =
+    vtkDataArray::SafeDownCast(remesh->GetOutput()->GetFieldData()->GetAbstractArray("Repairs"));
+  EXPECT_GT(turned, 0);
+  EXPECT_EQ(counts->GetComponent(0, 3), turned);
+  EXPECT_STREQ(counts->GetComponentName(3), "TurnedFaces");
+}
+
+TEST(QuadRemeshFilter, RegionsOfPointsAndSizesByArray)
+{
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetThetaResolution(80);
+  sphere->SetPhiResolution(60);
+  sphere->Update();
+  vtkPolyData* surface = sphere->GetOutput();
+  vtkNew<vtkIntArray> region;
+  region->SetName("Part");
+  vtkNew<vtkDoubleArray> size;
+  size->SetName("Sizes");
+  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
+  {
+    const double z = surface->GetPoint(i)[2];
+    region->InsertNextValue(z > 0.3 ? 1 : 0);
+    size->InsertNextValue(z > 0.0 ? 1.0 : 2.0);
+  }
+  surface->GetPointData()->AddArray(region);
+  surface->GetPointData()->AddArray(size);
+  vtkNew<vtkQuadRemesh> remesh;
+  remesh->SetInputData(surface);
+  remesh->SetNumberOfQuads(200);
+  remesh->SetRegionArray("Part");
+  remesh->SetSizing(vtkQuadRemesh::SIZE_BY_ARRAY);
+  remesh->SetSizeArray("Sizes");
+  ErrorLog log(remesh);
+  remesh->Update();
+  ASSERT_TRUE(log.empty()) << log.text();
+  vtkPolyData* out = remesh->GetOutput();
+  expectClosedQuads(out);
+  vtkDataArray* part = out->GetCellData()->GetArray("Part");
+  ASSERT_TRUE(part);
+  int above = 0;
+  for (vtkIdType i = 0; i < out->GetNumberOfCells(); ++i)
+  {
+    above += part->GetTuple1(i) == 1.0;
+  }
+  EXPECT_GT(above, 4);
+  EXPECT_LT(above, out->GetNumberOfCells());
 }
 
 TEST(QuadRemeshFilter, ScansOfSharedData)
