@@ -1,11 +1,12 @@
 /**
- * Prints the table of layout quality: LayoutTable [-o FOLDER] [-f ANGLE] [-t 50,100] FILE.obj ...
- * One line a surface and number of quads: validity, topology, irregular vertices, shape, distance
- * in percent of the diagonal of the bounding box, seconds. With -o the layouts are kept as OBJ
- * files.
+ * Prints the table of layout quality: LayoutTable [-o FOLDER] [-f ANGLE] [-m METHOD] [-t 50,100]
+ * FILE.obj ... One line a surface and number of quads: validity, topology, irregular vertices,
+ * shape, distance in percent of the diagonal of the bounding box, seconds. With -o the layouts are
+ * kept as OBJ files.
  */
 #include "Layout/QuadRemesh.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -125,6 +126,10 @@ int main(int argc, char** argv)
     else if (word == "-f" && i + 1 < argc)
     {
       options.FeatureAngle = std::atof(argv[++i]);
+    }
+    else if (word == "-m" && i + 1 < argc)
+    {
+      options.Method = static_cast<LayoutMethod>(std::clamp(std::atoi(argv[++i]), 0, 1));
     }
     else if (word == "-s" && i + 1 < argc)
     {
