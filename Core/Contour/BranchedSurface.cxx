@@ -1,0 +1,221 @@
+#include "Contour/BranchedSurface.h"
+
+#include "Common/Parallel.h"
+#include "Contour/SurfaceReport.h"
+
+#include <algorithm>
+
+namespace bsr
+{
+namespace
+{
+Status checkOptions(const BranchedOptions& o)
+{
+  if (o.OrderU < 3 || o.OrderU > 8 || o.OrderV < 3 || o.OrderV > 5)
+  {
+    return Status::invalidParameter("OrderU must be 3 to 8, OrderV 3 to 5.");
+  }
+  if (o.PointsPerSection != 0 && (o.PointsPerSection < 8 || o.PointsPerSection > 512))
+  {
+    return Status::invalidParameter("PointsPerSection must be 0 (automatic) or 8 to 512.");
+  }
+  if (!(o.SectionTolerance > 0.0) || !(o.JunctionPosition >= 0.0) || !(o.JunctionPosition < 1.0))
+  {
+    return Status::invalidParameter(
+      "SectionTolerance must be positive and JunctionPosition in 0 (automatic) to 1 exclusive.");
+  }
+  return Status::ok();
+}
+
+constexpr std::size_t MaximumRefined = 600; ///< patches of a surface that is refined as a whole
+
+/// Shapes of the star about a crotch that are tried in turn where a patch folds.
+struct Trial
+{
+  double StarSize;
+  double BendSpans;
+  bool Follow;
+};
+constexpr Trial Trials[] = {{1.0, 4.0, false}, {1.0, 4.0, true}, {0.6, 4.0, false},
+  {0.6, 2.0, false}, {0.6, 4.0, true}, {1.0, 2.0, false}, {0.35, 2.0, false}, {0.35, 4.0, true},
+  {0.35, 4.0, false}, {0.2, 1.0, false}};
+
+/// Makes a surface again and again, choosing for each end of a tube the rows that fold least.
+class Maker
+{
+public:
+  Maker(const ContourStack& stack, const BranchedNetwork& net, const BranchedOptions& options,
+    const RowOptions& rows)
+      : Stack(stack),
+        Net(net),
+        Options(options),
+        Rows(rows),
+        Sections(sectionRows(stack, net, options)),
+        Best(net.Junctions.size() + 2 * net.Tubes.size())
+  {
+    this->Choices.Junctions.assign(net.Junctions.size(), rows);
+    this->Choices.Caps.assign(net.Tubes.size(), {rows, rows});
+  }
+
+  Result<BranchedSurface> run(Monitor& monitor)
+  {
+    BranchedSurface best;
+    double share = 0.0;
+    for (const Trial& trial : Trials)
+    {
+      if (monitor.cancelled())
+      {
+        return Status::cancelled();
+      }
+      RowOptions rows = this->Rows;
+      rows.StarSize = trial.StarSize;
+      rows.BendSpans = trial.BendSpans;
+      rows.Follow = trial.Follow;
+      const bool first = best.Model.Patches.empty();
+      this->propose(rows, first);
+      BranchedSurface s = this->build();
+      this->judge(s, rows, first);
+      if (first || s.FoldedPatches < best.FoldedPatches)
+      {
+        best = std::move(s);
+      }
+      if (best.FoldedPatches == 0)
+      {
+        return best;
+      }
+      monitor.progress(share += 0.09);
+    }
+    this->propose(this->Rows, false, false); // the best of each
+    BranchedSurface s = this->build();
+    return s.FoldedPatches < best.FoldedPatches ? std::move(s) : std::move(best);
+  }
+
+private:
+  struct Known
+  {
+    int Folded = 0;
+    RowOptions Rows;
+  };
+
+  std::size_t placeOf(const PatchOrigin& o) const
+  {
+    const Tube& t = this->Net.Tubes[o.Tube];
+    const int end = t.Junctions[o.End] >= 0 || t.Capped[o.End] ? o.End : 1 - o.End;
+    return t.Junctions[end] >= 0
+             ? static_cast<std::size_t>(t.Junctions[end])
+             : this->Net.Junctions.size() + 2 * static_cast<std::size_t>(o.Tube) +
+                 static_cast<std::size_t>(end);
+  }
+
+  /// The new rows where there are folds (everywhere at first), else the best known ones.
+  void propose(const RowOptions& rows, bool first, bool fresh = true)
+  {
+    const auto pick = [&](std::size_t place)
+    { return fresh && (first || this->Best[place].Folded > 0) ? rows : this->Best[place].Rows; };
+    for (std::size_t j = 0; j < this->Net.Junctions.size(); ++j)
+    {
+      this->Choices.Junctions[j] = pick(j);
+    }
+    for (std::size_t t = 0; t < this->Net.Tubes.size(); ++t)
+    {
+      for (std::size_t e = 0; e < 2; ++e)
+      {
+        this->Choices.Caps[t][e] = pick(this->Net.Junctions.size() + 2 * t + e);
+      }
+    }
+  }
+
+  void judge(const BranchedSurface& s, const RowOptions& rows, bool first)
+  {
+    std::vector<int> folded(this->Best.size(), 0);
+    for (std::size_t p = 0; p < s.Jacobians.size(); ++p)
+    {
+      folded[this->placeOf(s.Origins[p])] += s.Jacobians[p] < 0.0 ? 1 : 0;
+    }
+    for (std::size_t k = 0; k < folded.size(); ++k)
+    {
+      if (first || folded[k] < this->Best[k].Folded)
+      {
+        this->Best[k] = {folded[k], rows};
+      }
+    }
+  }
+
+  BranchedSurface build() const
+  {
+    const InsertedRows inserted = insertRows(this->Stack, this->Net, this->Sections, this->Choices);
+    std::vector<TubeSurface> tubes(this->Net.Tubes.size());
+    parallelFor(0, static_cast<std::int64_t>(tubes.size()), 1,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        for (std::int64_t t = begin; t < end; ++t)
+        {
+          tubes[t] = makeTube(this->Net, static_cast<Index>(t), this->Sections[t], inserted,
+            this->Options, this->Rows);
+        }
+      });
+    BranchedSurface s = assemblePatches(this->Stack, this->Net, tubes, inserted, this->Options);
+    s.Jacobians = patchJacobians(s.Model);
+    s.FoldedPatches = static_cast<int>(
+      std::count_if(s.Jacobians.begin(), s.Jacobians.end(), [](double j) { return j < 0.0; }));
+    return s;
+  }
+
+  const ContourStack& Stack;
+  const BranchedNetwork& Net;
+  const BranchedOptions& Options;
+  const RowOptions Rows;
+  const std::vector<std::vector<ControlRow>> Sections;
+  std::vector<Known> Best; ///< of each junction, then of the two ends of each tube
+  RowChoices Choices;
+};
+} // namespace
+
+Result<BranchedSurface> makeBranchedSurface(
+  const ContourStack& stack, const BranchedOptions& options, Monitor& monitor)
+{
+  if (Status s = checkOptions(options); !s)
+  {
+    return s;
+  }
+  NetworkOptions no;
+  no.Order = options.OrderU;
+  no.PointsPerSection = options.PointsPerSection;
+  no.SectionTolerance = options.SectionTolerance;
+  no.Caps = options.Caps;
+  RowOptions rows;
+  rows.OrderU = options.OrderU;
+  rows.OrderV = options.OrderV;
+  rows.Kind = options.Kind;
+  rows.Tangency = options.Tangency;
+  rows.Position = options.JunctionPosition;
+  BranchedSurface best;
+  double done = 0.0;
+  for (const double refinement : {1.0, 1.5, 2.2}) // more columns where a patch folds
+  {
+    no.Refinement = refinement;
+    SubMonitor first(monitor, done, done + 0.1);
+    const auto net = makeNetwork(stack, no, first);
+    if (!net)
+    {
+      return net.status();
+    }
+    SubMonitor rest(monitor, done + 0.1, done + 0.33);
+    auto s = Maker(stack, *net, options, rows).run(rest);
+    if (!s)
+    {
+      return s;
+    }
+    done += 0.33;
+    if (best.Model.Patches.empty() || s->FoldedPatches < best.FoldedPatches)
+    {
+      best = std::move(*s);
+    }
+    if (best.FoldedPatches == 0 || best.Model.Patches.size() > MaximumRefined)
+    {
+      break;
+    }
+  }
+  return best;
+}
+} // namespace bsr

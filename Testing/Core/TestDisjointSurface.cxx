@@ -1,0 +1,221 @@
+#include "Contour/SurfaceReport.h"
+#include "PublishedSurfaces.h"
+#include "Spline/Evaluate.h"
+#include "Spline/ModelCheck.h"
+#include "Spline/SampleModel.h"
+#include "Spline/Topology.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+using namespace bsr;
+using namespace bsrtest;
+
+namespace
+{
+DisjointModel modelOf(const DisjointSurface& s)
+{
+  auto m = modelOfDisjoint(s);
+  EXPECT_TRUE(m.isOk()) << m.status().message();
+  if (!m)
+  {
+    return {};
+  }
+  const Status valid = checkModel(m->Model);
+  EXPECT_TRUE(valid.isOk()) << valid.message();
+  return std::move(*m);
+}
+
+/// Whether a segment passes through the inside of a triangle.
+bool pierces(const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& t)
+{
+  const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+  const double a = n.dot(p - t[0]);
+  const double b = n.dot(q - t[0]);
+  if (!(a * b < 0.0) || std::min(std::abs(a), std::abs(b)) < 1e-9 * n.norm())
+  {
+    return false;
+  }
+  const Vec3 x = p + a / (a - b) * (q - p);
+  for (int k = 0; k < 3; ++k)
+  {
+    const Vec3 side = t[(k + 1) % 3] - t[k];
+    if (n.dot(side.cross(x - t[k])) < 1e-6 * n.squaredNorm())
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Pairs of triangles of a sampled model that cross, without those that have a point in common.
+int crossings(const SplineModel& model)
+{
+  Monitor monitor;
+  const auto mesh = sampleModel(model, {4, 0.0, false}, monitor);
+  std::vector<std::array<Vec3, 3>> all;
+  std::vector<std::pair<Vec3, Vec3>> box;
+  for (const auto& q : mesh->Polygons)
+  {
+    const auto add = [&](Index a, Index b, Index c)
+    {
+      all.push_back({mesh->Points[a], mesh->Points[b], mesh->Points[c]});
+      const auto& t = all.back();
+      box.emplace_back(t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2]));
+    };
+    add(q[0], q[1], q[2]);
+    if (q[3] >= 0)
+    {
+      add(q[0], q[2], q[3]);
+    }
+  }
+  int count = 0;
+  for (std::size_t i = 0; i < all.size(); ++i)
+  {
+    for (std::size_t j = i + 1; j < all.size(); ++j)
+    {
+      if ((box[i].first.array() > box[j].second.array()).any() ||
+          (box[j].first.array() > box[i].second.array()).any())
+      {
+        continue;
+      }
+      bool touch = false;
+      for (const Vec3& p : all[i])
+      {
+        for (const Vec3& q : all[j])
+        {
+          touch = touch || (p - q).norm() < 1e-9;
+        }
+      }
+      for (int k = 0; k < 3 && !touch; ++k)
+      {
+        if (pierces(all[i][k], all[i][(k + 1) % 3], all[j]) ||
+            pierces(all[j][k], all[j][(k + 1) % 3], all[i]))
+        {
+          ++count;
+          break;
+        }
+      }
+    }
+  }
+  return count;
+}
+
+double largestJump(const SplineModel& m)
+{
+  double worst = 0.0;
+  for (const SideJumps& j : normalJumps(m))
+  {
+    worst = std::max(worst, *std::max_element(j.begin(), j.end()));
+  }
+  return worst;
+}
+} // namespace
+
+TEST(DisjointSurface, RangesSkipTheColumnsBetweenCurves)
+{
+  DisjointSurface s;
+  s.Counts = {6, 8, 5};
+  s.Rows.assign(4, ControlRow(19, Vec3::Zero()));
+  const auto r = disjointRanges(s); // section 2.1: u max 1 = x(n1 + 2), u min 2 = u max 1 + k - 1
+  ASSERT_EQ(r.size(), 3u);
+  EXPECT_EQ(r[0], (std::array<double, 2>{2.0, 6.0}));
+  EXPECT_EQ(r[1], (std::array<double, 2>{8.0, 14.0}));
+  EXPECT_EQ(r[2], (std::array<double, 2>{16.0, 19.0}));
+  s.UniformU = true;
+  EXPECT_EQ(disjointRanges(s)[0], (std::array<double, 2>{0.0, 4.0}));
+  EXPECT_EQ(disjointRanges(s)[2][1], 17.0);
+}
+
+TEST(DisjointSurface, ModelIsTheSameSurface)
+{
+  for (const bool uniform : {false, true})
+  {
+    DisjointSurface s = publishedSurface(PublishedModel::SharedEdge);
+    s.UniformU = uniform;
+    s.UniformV = uniform;
+    const DisjointModel m = modelOf(s);
+    const auto ranges = disjointRanges(s);
+    const auto v = disjointRangeV(s);
+    std::size_t next = 0;
+    for (std::size_t p = 0; p < m.Model.Patches.size(); ++p)
+    {
+      const auto d = patchDomain(m.Model, m.Model.Patches[p]);
+      const auto& range = ranges[next++ % ranges.size()];
+      for (const double t : {0.1, 0.37, 0.8})
+      {
+        const double u = d[0] + t * (d[1] - d[0]);
+        const double w = d[2] + t * (d[3] - d[2]);
+        EXPECT_EQ(d[0], range[0]);
+        EXPECT_GE(d[2], v[0]);
+        EXPECT_LE(d[3], v[1]);
+        EXPECT_LT(
+          (evaluatePatch(m.Model, m.Model.Patches[p], u, w).Point - evaluateDisjoint(s, u, w))
+            .norm(),
+          1e-12);
+      }
+    }
+  }
+}
+
+/// Section 3: what is wrong with the earlier models.
+TEST(DisjointSurface, EarlierModelsIntersectAndTear)
+{
+  const DisjointModel first = modelOf(publishedSurface(PublishedModel::First));
+  EXPECT_EQ(first.Torn, 0);
+  EXPECT_GT(crossings(first.Model), 10);
+  for (const PublishedModel k : {PublishedModel::SecondWrapped, PublishedModel::SecondRepeated})
+  {
+    const DisjointModel second = modelOf(publishedSurface(k));
+    EXPECT_GE(second.Torn, 4);
+    EXPECT_GT(second.TornGap, 0.1);
+  }
+}
+
+/// Figures 6, 8 and 9: closed, without self-intersection. The tangent planes of 5.2 agree along the
+/// parameter lines only: in space the sheets meet in a cusp at the crotch (180 degrees).
+TEST(DisjointSurface, PublishedJunctionsAreClosed)
+{
+  for (const PublishedModel k :
+    {PublishedModel::Superimposed, PublishedModel::SharedEdge, PublishedModel::Asymmetric})
+  {
+    SCOPED_TRACE(static_cast<int>(k));
+    const DisjointModel m = modelOf(publishedSurface(k));
+    EXPECT_EQ(m.Torn, 0);
+    EXPECT_EQ(crossings(m.Model), 0);
+    const auto [component, count] = patchComponents(m.Model);
+    EXPECT_EQ(count, 1);
+    // Section 6 is smooth along the seams, but its patches have no normal at the crotch.
+    const std::vector<double> size = patchJacobians(m.Model);
+    const bool degenerate = *std::min_element(size.begin(), size.end()) < 0.0;
+    if (k == PublishedModel::Asymmetric)
+    {
+      EXPECT_LT(largestJump(m.Model), 1e-6);
+      EXPECT_TRUE(degenerate);
+    }
+    else
+    {
+      EXPECT_GT(largestJump(m.Model), 170.0);
+    }
+  }
+}
+
+TEST(DisjointSurface, BadInputIsNamed)
+{
+  DisjointSurface s = publishedSurface(PublishedModel::SharedEdge);
+  s.OrderV = 11;
+  EXPECT_EQ(modelOfDisjoint(s).status().code(), StatusCode::InvalidParameter);
+  s.OrderV = 3;
+  s.Counts = {2, 10};
+  EXPECT_EQ(modelOfDisjoint(s).status().code(), StatusCode::InvalidInput);
+  s.Counts = {6, 5};
+  EXPECT_EQ(modelOfDisjoint(s).status().code(), StatusCode::InvalidInput);
+  s.Counts = {6, 6};
+  s.Rows[1][3].x() = std::nan("");
+  EXPECT_EQ(modelOfDisjoint(s).status().code(), StatusCode::InvalidInput);
+  s.Rows.resize(2);
+  EXPECT_EQ(modelOfDisjoint(s).status().code(), StatusCode::InvalidInput);
+  s.Counts.clear();
+  EXPECT_EQ(modelOfDisjoint(s).status().code(), StatusCode::InvalidInput);
+}
