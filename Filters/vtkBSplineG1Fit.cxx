@@ -71,6 +71,13 @@ bsr::Result<bsr::PartitionedPoints> pointsOf(vtkPointSet* input, const std::stri
       p.Normals.push_back(normal.allFinite() ? normal : bsr::Vec3(bsr::Vec3::Zero()));
     }
   }
+  if (vtkDataArray* boundary = input->GetPointData()->GetArray("Boundary"))
+  {
+    for (vtkIdType i = 0; i < n; ++i)
+    {
+      p.Boundary.push_back(static_cast<std::uint8_t>(boundary->GetComponent(i, 0)));
+    }
+  }
   if (!weightArray.empty())
   {
     auto weights = arrayOf(

@@ -18,6 +18,8 @@
  * - `QuadId` (Int32): quad of the layout, -1 to ignore the point;
  * - `UV` (two components): its place on the quad, in the unit square;
  * - `Side` (UInt8, optional): 0 outer wall, 1 inner wall, others are ignored;
+ * - `Boundary` (UInt8, optional): 1 for points on a boundary side of an open layout, which the
+ *   model's boundary follows (vtkPartitionToQuads, Geodesic);
  * - WeightArray (optional): weights >= 0.
  * Input port 1 (Quads): the layout, quads only, oriented outward, of valence 3 and more inside.
  *

@@ -1,6 +1,7 @@
 #include "vtkFiberReconstruction.h"
 
 #include "Adapters/BSRImageAdapter.h"
+#include "Adapters/BSRStageRunner.h"
 #include "vtkBSplineG1Fit.h"
 #include "vtkClosing.h"
 #include "vtkEDTClassify.h"
@@ -8,10 +9,8 @@
 #include "vtkPartitionToQuads.h"
 #include "vtkQuadRemesh.h"
 
-#include <vtkCommand.h>
 #include <vtkDataArray.h>
 #include <vtkDataObject.h>
-#include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
 #include <vtkFlyingEdges3D.h>
 #include <vtkImageData.h>
@@ -22,115 +21,13 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
-#include <vtkStringArray.h>
 #include <vtkTable.h>
-#include <vtkTimerLog.h>
 #include <vtkUnsignedCharArray.h>
-
-#include <functional>
-#include <string>
-#include <vector>
 
 vtkStandardNewMacro(vtkFiberReconstruction);
 
 namespace
 {
-/**
- * Runs the stages one after the other: passes their progress and errors on to the compound, and the
- * compound's abort flag to them, and keeps the time of each.
- */
-class StageRunner
-{
-public:
-  StageRunner(vtkAlgorithm* owner, double total) : Owner(owner), Total(total) {}
-
-  /// Updates a filter; false when it failed or was aborted. `share`: its part of the whole work.
-  bool run(const char* name, vtkAlgorithm* stage, double share)
-  {
-    this->Stage = name;
-    this->Begin = this->Done;
-    this->Share = share;
-    const auto progress =
-      stage->AddObserver(vtkCommand::ProgressEvent, this, &StageRunner::onProgress);
-    const auto error = this->observeErrors(stage);
-    const double start = vtkTimerLog::GetUniversalTime();
-    stage->Update();
-    this->Names.emplace_back(name);
-    this->Seconds.push_back(vtkTimerLog::GetUniversalTime() - start);
-    stage->RemoveObserver(progress);
-    stage->RemoveObserver(error.first);
-    stage->GetExecutive()->RemoveObserver(error.second);
-    this->Done += share;
-    this->Owner->UpdateProgress(this->Done / this->Total);
-    return this->Message.empty() && !this->Owner->GetAbortExecute();
-  }
-
-  const std::string& message() const { return this->Message; }
-  const std::string& stage() const { return this->Stage; }
-
-  void addTimes(vtkFieldData* field) const
-  {
-    vtkNew<vtkStringArray> names;
-    names->SetName("StageNames");
-    vtkNew<vtkDoubleArray> seconds;
-    seconds->SetName("StageSeconds");
-    for (std::size_t i = 0; i < this->Names.size(); ++i)
-    {
-      names->InsertNextValue(this->Names[i]);
-      seconds->InsertNextValue(this->Seconds[i]);
-    }
-    field->AddArray(names);
-    field->AddArray(seconds);
-  }
-
-private:
-  std::pair<unsigned long, unsigned long> observeErrors(vtkAlgorithm* stage)
-  {
-    return {stage->AddObserver(vtkCommand::ErrorEvent, this, &StageRunner::onError),
-      stage->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, this, &StageRunner::onError)};
-  }
-
-  void onProgress(vtkObject* caller, unsigned long, void* data)
-  {
-    const double share = data ? *static_cast<double*>(data) : 0.0;
-    this->Owner->UpdateProgress((this->Begin + share * this->Share) / this->Total);
-    if (this->Owner->GetAbortExecute())
-    {
-      vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1);
-    }
-  }
-
-  void onError(vtkObject*, unsigned long, void* data)
-  {
-    if (this->Message.empty())
-    {
-      this->Message = data ? static_cast<const char*>(data) : "unknown error";
-    }
-  }
-
-  vtkAlgorithm* Owner;
-  double Total;
-  double Done = 0.0;
-  double Begin = 0.0;
-  double Share = 0.0;
-  std::string Stage;
-  std::string Message;
-  std::vector<std::string> Names;
-  std::vector<double> Seconds;
-};
-
-/// The text of an error without VTK's "ERROR: In file, line ...: vtkX (0x...): " in front.
-std::string plainMessage(const std::string& text)
-{
-  const auto at = text.find("): ");
-  std::string plain = at == std::string::npos ? text : text.substr(at + 3);
-  while (!plain.empty() && (plain.back() == '\n' || plain.back() == ' '))
-  {
-    plain.pop_back();
-  }
-  return plain;
-}
-
 void copyField(vtkFieldData* from, vtkFieldData* to, std::initializer_list<const char*> names)
 {
   for (const char* name : names)
@@ -210,7 +107,7 @@ int vtkFiberReconstruction::RequestData(
       0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
   }
   vtkInformation* array = this->GetInputArrayInformation(0);
-  StageRunner stages(this, 100.0);
+  bsr::StageRunner stages(this, 100.0);
   const auto fail = [&]()
   {
     for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
@@ -221,7 +118,7 @@ int vtkFiberReconstruction::RequestData(
     {
       return 1; // cancelled
     }
-    vtkErrorMacro(<< stages.stage() << ": " << plainMessage(stages.message()));
+    vtkErrorMacro(<< stages.stage() << ": " << stages.message());
     return 0;
   };
 

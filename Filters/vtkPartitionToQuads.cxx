@@ -19,6 +19,7 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
+#include <vtkUnsignedCharArray.h>
 
 vtkStandardNewMacro(vtkPartitionToQuads);
 
@@ -73,6 +74,14 @@ void attach(const bsr::Partition& p, vtkPointSet* output)
   output->GetPointData()->AddArray(quad);
   output->GetPointData()->AddArray(uv);
   output->GetPointData()->AddArray(distance);
+  if (!p.Boundary.empty())
+  {
+    vtkNew<vtkUnsignedCharArray> boundary;
+    boundary->SetName("Boundary");
+    boundary->SetNumberOfTuples(n);
+    std::copy(p.Boundary.begin(), p.Boundary.end(), boundary->GetPointer(0));
+    output->GetPointData()->AddArray(boundary);
+  }
   bsr::addField(output->GetFieldData(), "QuadDistanceRMS", p.RMS);
   bsr::addField(output->GetFieldData(), "QuadDistanceMax", p.Max);
   bsr::addField(output->GetFieldData(), "EmptyQuads", static_cast<double>(p.EmptyQuads));

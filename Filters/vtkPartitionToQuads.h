@@ -31,6 +31,9 @@
  *   corner 0 to corner 3;
  * - `QuadDistance` (Float64): distance to the quad (Geodesic: to the mesh), in world units.
  *
+ * With Geodesic on an open mesh also `Boundary` (UInt8): 1 for points of the mesh's boundary, which
+ * lie on boundary sides of the layout; vtkBSplineG1Fit lets the model's boundary follow them.
+ *
  * Field data: `QuadDistanceRMS`, `QuadDistanceMax` (world units), `EmptyQuads` (quads without
  * points); with Geodesic also `FailedQuads`, `RoughSides` (sides left as paths of mesh edges),
  * `FoldedTriangles` (0: the maps are one to one) and `SideRatio` (worst ratio of the longest to the

@@ -47,6 +47,10 @@ public:
 private:
   void refine(double edge);
   bool placeCorners(const QuadMesh& layout, const LayoutGraph& graph);
+  std::vector<std::vector<Index>> boundaries() const;
+  Index nextOnBoundary(Index v) const;
+  bool placeOnBoundary(const QuadMesh& layout, const std::vector<Index>& corners,
+    std::vector<std::vector<Index>>& loops);
   bool followBoundary(const LayoutGraph& graph, Index edge);
   bool traceSide(const QuadMesh& layout, const LayoutGraph& graph, Index edge, bool near);
   std::vector<Index> sector(const LayoutGraph& graph, Index vertex, Index edge) const;

@@ -338,6 +338,7 @@ public:
       }
     }
     this->locate();
+    this->markBoundary();
     this->describe();
     this->Watch.progress(1.0);
     return std::move(this->Out);
@@ -516,6 +517,35 @@ private:
     }
     p.EmptyQuads = std::count(used.begin(), used.end(), 0);
     p.RMS = std::sqrt(sum / static_cast<double>(n));
+  }
+
+  /// Points of the mesh's boundary are put exactly on their sides.
+  void markBoundary()
+  {
+    Partition& p = this->Out.Points;
+    Box box;
+    std::for_each(
+      this->Input.Points.begin(), this->Input.Points.end(), [&](const Vec3& x) { box.add(x); });
+    const double near = 1e-9 * (box.Max - box.Min).norm();
+    std::vector<std::uint8_t> boundary(p.QuadId.size(), 0);
+    bool any = false;
+    for (std::size_t i = 0; i < p.QuadId.size(); ++i)
+    {
+      Vec2& uv = p.UV[i];
+      for (int k = 0; k < 4 && p.Distance[i] <= near; ++k)
+      {
+        double& across = uv[k % 2 == 0 ? 1 : 0];
+        const double border = k == 1 || k == 2 ? 1.0 : 0.0;
+        if (this->Graph.Twin[4 * p.QuadId[i] + k] < 0 && std::abs(across - border) < 1e-9 &&
+            !this->Out.Failed[p.QuadId[i]])
+        {
+          across = border;
+          boundary[i] = 1;
+          any = true;
+        }
+      }
+    }
+    p.Boundary = any ? std::move(boundary) : std::vector<std::uint8_t>();
   }
 
   void describe()

@@ -89,4 +89,28 @@ Result<LayoutGraph> LayoutGraph::build(const QuadMesh& mesh)
   }
   return g;
 }
+
+std::vector<std::vector<Index>> LayoutGraph::boundaries() const
+{
+  std::vector<std::vector<Index>> loops;
+  std::map<Index, Index> next;
+  for (Index h = 0; h < static_cast<Index>(this->Twin.size()); ++h)
+  {
+    if (this->Twin[h] < 0)
+    {
+      next[this->from(h)] = this->to(h);
+    }
+  }
+  while (!next.empty())
+  {
+    std::vector<Index> loop;
+    for (auto at = next.begin(); at != next.end(); at = next.find(loop.back()))
+    {
+      loop.push_back(at->second);
+      next.erase(at);
+    }
+    loops.push_back(std::move(loop));
+  }
+  return loops;
+}
 } // namespace bsr

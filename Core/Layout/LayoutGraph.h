@@ -20,6 +20,8 @@ struct LayoutGraph
 
   static Result<LayoutGraph> build(const QuadMesh& mesh);
 
+  /// The vertices of each boundary loop, quads on its left.
+  std::vector<std::vector<Index>> boundaries() const;
   Index from(Index h) const { return this->Quads[h / 4][h % 4]; }
   Index to(Index h) const { return this->Quads[h / 4][(h + 1) % 4]; }
   Index edges() const { return static_cast<Index>(this->First.size()); }

@@ -20,6 +20,8 @@ struct Partition
   std::vector<Index> QuadId;
   std::vector<Vec2> UV;
   std::vector<double> Distance;
+  /// 1 for points of an open mesh's boundary, at their place on a boundary side; empty: none.
+  std::vector<std::uint8_t> Boundary;
   std::int64_t EmptyQuads = 0; ///< quads that no point belongs to
   double RMS = 0.0;            ///< of the distances
   double Max = 0.0;

@@ -172,6 +172,10 @@ private:
     const double share = this->Options.Rational ? 0.3 : 0.45; // of a shell in the progress
     for (int side = 0; side < 2; ++side)
     {
+      if (side == 1 && this->Input.Side.empty())
+      {
+        break; // nobody spoke of an inner wall
+      }
       auto points = selectPoints(this->Input, this->Full, this->Cut, side);
       if (side == 1 && tooFew(points, net))
       {
@@ -202,7 +206,7 @@ private:
         this->gaugeWall(net, shells[0], points, shellOptions);
       }
       auto fit = fitShell(layout, *solver, std::move(points),
-        rimSamples(complex, this->Full.Points, true), shellOptions, part);
+        borderSamples(this->Input, this->Cut, complex, this->Full.Points), shellOptions, part);
       if (!fit)
       {
         return fit.status();

@@ -34,6 +34,8 @@ struct PartitionedPoints
   std::vector<std::uint8_t> Side; ///< 0 outer, 1 inner, others ignored; empty: all outer
   std::vector<double> Weights;    ///< empty: all 1
   std::vector<Vec3> Normals;      ///< of the surface they come from, of either sign; empty: unknown
+  /// 1: on the boundary of the surface, with UV on a boundary side; it will follow. Empty: none.
+  std::vector<std::uint8_t> Boundary;
 };
 
 struct G1FitOptions

@@ -65,10 +65,11 @@ Status checkPoints(const PartitionedPoints& points, const QuadMesh& quads)
   if (points.QuadId.size() != n || points.UV.size() != n ||
       (!points.Side.empty() && points.Side.size() != n) ||
       (!points.Weights.empty() && points.Weights.size() != n) ||
-      (!points.Normals.empty() && points.Normals.size() != n))
+      (!points.Normals.empty() && points.Normals.size() != n) ||
+      (!points.Boundary.empty() && points.Boundary.size() != n))
   {
     return Status::invalidInput(
-      "QuadId, UV, Side, Normals or the weights do not have one value a point; apply "
+      "QuadId, UV, Side, Normals, Boundary or the weights do not have one value a point; apply "
       "PartitionToQuads to these points.");
   }
   const auto quadCount = static_cast<Index>(quads.Quads.size());
@@ -141,5 +142,40 @@ std::vector<FitPoint> selectPoints(
   }
   sortByPatch(own, static_cast<Index>(cut.Kept.size()));
   return own;
+}
+
+std::vector<RimSample> borderSamples(const PartitionedPoints& points, const CutLayout& cut,
+  const QuadComplex& complex, const std::vector<Vec3>& vertices)
+{
+  constexpr double SideWeight = 24.0; ///< of all samples of a side: half of a patch's points
+  std::vector<RimSample> samples;
+  std::vector<double> count(4 * cut.Kept.size(), 0.0);
+  for (std::size_t i = 0; i < points.Boundary.size(); ++i)
+  {
+    const Index quad = points.QuadId[i] < 0 ? -1 : cut.NewId[points.QuadId[i]];
+    const Vec2& uv = points.UV[i];
+    const std::array<double, 4> across = {uv[1], 1.0 - uv[0], 1.0 - uv[1], uv[0]};
+    const std::array<double, 4> along = {uv[0], uv[1], 1.0 - uv[0], 1.0 - uv[1]};
+    for (int k = 0; k < 4 && quad >= 0 && points.Boundary[i]; ++k)
+    {
+      if (across[k] == 0.0 && complex.twin(4 * quad + k) < 0)
+      {
+        samples.push_back({4 * quad + k, along[k], points.Points[i], Vec3::Zero()});
+        count[4 * quad + k] += 1.0;
+      }
+    }
+  }
+  for (RimSample& s : samples)
+  {
+    s.Weight = SideWeight / count[s.HalfEdge];
+  }
+  for (const RimSample& s : rimSamples(complex, vertices, true))
+  {
+    if (count[s.HalfEdge] == 0.0)
+    {
+      samples.push_back(s);
+    }
+  }
+  return samples;
 }
 } // namespace bsr

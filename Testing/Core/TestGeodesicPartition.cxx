@@ -2,6 +2,8 @@
 
 #include "Layout/GeodesicPartition.h"
 #include "Layout/SquareMap.h"
+#include "Spline/Evaluate.h"
+#include "Spline/G1Fit.h"
 #include "Spline/SideNetwork.h"
 
 #include <gtest/gtest.h>
@@ -309,4 +311,68 @@ TEST(SideNetwork, IsEvenSmoothAndOnTheMesh)
     EXPECT_LT(std::abs(side[i].z()), 0.01);
     EXPECT_NEAR(side[i].norm(), 1.0, 3e-3);
   }
+}
+
+TEST(GeodesicPartition, TheModelFollowsAnOpenBoundary)
+{
+  // A tube with a wavy rim.
+  TriangleMesh tube = bsrtest::tubeMesh(48, 48);
+  for (Vec3& p : tube.Points)
+  {
+    p.z() *= 1.0 + 0.15 * std::cos(2.0 * std::atan2(p.y(), p.x()));
+  }
+  QuadMesh quads;
+  const int m = 6;
+  for (int j = 0; j <= 4; ++j)
+  {
+    for (int i = 0; i < m; ++i)
+    {
+      const double a = 2 * M_PI * i / m;
+      quads.Points.emplace_back(
+        std::cos(a), std::sin(a), (j - 2.0) * (1.0 + 0.15 * std::cos(2.0 * a)));
+      if (j < 4)
+      {
+        const Index i1 = (i + 1) % m;
+        quads.Quads.push_back({j * m + i, j * m + i1, (j + 1) * m + i1, (j + 1) * m + i});
+      }
+    }
+  }
+  const GeodesicPartition p = partitioned(tube.Points, tube, quads);
+  ASSERT_FALSE(p.Points.Boundary.empty());
+  EXPECT_EQ(std::count(p.Points.Boundary.begin(), p.Points.Boundary.end(), 1), 2 * 48);
+  PartitionedPoints points;
+  points.Points = tube.Points;
+  points.QuadId = p.Points.QuadId;
+  points.UV = p.Points.UV;
+  points.Boundary = p.Points.Boundary;
+  G1FitOptions options;
+  options.DataWeight = 1e4;
+  options.Robust = false;
+  Monitor quiet;
+  const auto fit = fitG1(points, quads, options, quiet);
+  ASSERT_TRUE(fit.isOk()) << fit.status().message();
+  EXPECT_EQ(fit->FoldedPatches, 0);
+  EXPECT_LT(fit->Rms, 3e-3);
+  // The border curves of the model lie on the rims.
+  double worst = 0.0;
+  for (std::size_t patch = 0; patch < quads.Quads.size(); ++patch)
+  {
+    for (int k = 0; k < 4; ++k)
+    {
+      if (fit->Model.Neighbors[patch][k] >= 0)
+      {
+        continue;
+      }
+      for (int s = 0; s <= 10; ++s)
+      {
+        const double t = s / 10.0;
+        const std::array<Vec2, 4> at = {Vec2(t, 0), Vec2(1, t), Vec2(t, 1), Vec2(0, t)};
+        const Vec3 x =
+          evaluatePatch(fit->Model, fit->Model.Patches[patch], at[k][0], at[k][1]).Point;
+        const double rim = 2.0 * (1.0 + 0.15 * std::cos(2.0 * std::atan2(x.y(), x.x())));
+        worst = std::max(worst, std::abs(std::abs(x.z()) - rim));
+      }
+    }
+  }
+  EXPECT_LT(worst, 0.01);
 }
