@@ -172,10 +172,6 @@ private:
     const double share = this->Options.Rational ? 0.3 : 0.45; // of a shell in the progress
     for (int side = 0; side < 2; ++side)
     {
-      if (side == 1 && this->Input.Side.empty())
-      {
-        break; // nobody spoke of an inner wall
-      }
       auto points = selectPoints(this->Input, this->Full, this->Cut, side);
       if (side == 1 && tooFew(points, net))
       {

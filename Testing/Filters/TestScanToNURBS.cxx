@@ -1,0 +1,112 @@
+#include "FilterTesting.h"
+#include "vtkScanToNURBS.h"
+
+#include <vtkCellData.h>
+#include <vtkFeatureEdges.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSphereSource.h>
+#include <vtkTable.h>
+
+using bsrtest::ErrorLog;
+
+namespace
+{
+/// A sphere without a cap of `open` degrees around its south pole.
+vtkSmartPointer<vtkPolyData> scan(double open)
+{
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetThetaResolution(48);
+  sphere->SetPhiResolution(40);
+  sphere->SetRadius(1.0);
+  sphere->SetEndPhi(180.0 - open);
+  sphere->Update();
+  return sphere->GetOutput();
+}
+
+vtkIdType openEdges(vtkPolyData* p)
+{
+  vtkNew<vtkFeatureEdges> edges;
+  edges->SetInputData(p);
+  edges->FeatureEdgesOff();
+  edges->Update();
+  return edges->GetOutput()->GetNumberOfCells();
+}
+
+void expectModel(vtkScanToNURBS* filter, double rms, double euler)
+{
+  auto* report = vtkTable::SafeDownCast(filter->GetOutputDataObject(vtkScanToNURBS::REPORT));
+  ASSERT_GT(report->GetNumberOfRows(), 0);
+  EXPECT_LT(bsrtest::fieldValue(report, "RelativeRMS"), rms);
+  EXPECT_EQ(bsrtest::fieldValue(report, "FoldedPatches"), 0.0);
+  EXPECT_LT(bsrtest::fieldValue(report, "MaxNormalJump"), 0.01);
+  EXPECT_EQ(bsrtest::fieldValue(report, "EulerCharacteristic"), euler);
+  EXPECT_TRUE(report->GetFieldData()->GetAbstractArray("StageNames"));
+  auto* model = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(vtkScanToNURBS::MODEL));
+  EXPECT_TRUE(model->GetFieldData()->GetArray("SplinePatches"));
+}
+} // namespace
+
+TEST(ScanToNURBSFilter, ClosesGapsAndGivesEveryStage)
+{
+  vtkNew<vtkScanToNURBS> filter;
+  filter->SetInputDataObject(0, scan(12.0));
+  filter->SetNumberOfQuads(30);
+  ErrorLog log(filter);
+  filter->Update();
+  EXPECT_TRUE(log.empty()) << log.text();
+  expectModel(filter, 1e-3, 2.0);
+  const auto output = [&](int port)
+  { return vtkPolyData::SafeDownCast(filter->GetOutputDataObject(port)); };
+  EXPECT_EQ(openEdges(output(vtkScanToNURBS::MODEL)), 0);
+  EXPECT_TRUE(output(vtkScanToNURBS::CLOSED_MESH)->GetCellData()->GetArray("Filled"));
+  EXPECT_GT(output(vtkScanToNURBS::LAYOUT)->GetNumberOfPolys(), 20);
+  EXPECT_TRUE(output(vtkScanToNURBS::POINTS)->GetPointData()->GetArray("UV"));
+  EXPECT_GT(output(vtkScanToNURBS::NETWORK)->GetNumberOfLines(), 40);
+}
+
+TEST(ScanToNURBSFilter, KeepsAnOpenBoundary)
+{
+  vtkNew<vtkScanToNURBS> filter;
+  filter->SetInputDataObject(0, scan(70.0));
+  filter->SetNumberOfQuads(30);
+  ErrorLog log(filter);
+  filter->Update();
+  EXPECT_TRUE(log.empty()) << log.text();
+  expectModel(filter, 1e-3, 1.0);
+  auto* model = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(vtkScanToNURBS::MODEL));
+  EXPECT_GT(openEdges(model), 0);
+  // The model ends where the scan does.
+  EXPECT_NEAR(model->GetBounds()[4], scan(70.0)->GetBounds()[4], 5e-3);
+}
+
+TEST(ScanToNURBSFilter, TakesPointsWithoutTriangles)
+{
+  vtkNew<vtkPolyData> points;
+  points->SetPoints(scan(0.0)->GetPoints());
+  vtkNew<vtkScanToNURBS> filter;
+  filter->SetInputDataObject(0, points);
+  filter->SetNumberOfQuads(30);
+  ErrorLog log(filter);
+  filter->Update();
+  EXPECT_TRUE(log.empty()) << log.text();
+  expectModel(filter, 2e-3, 2.0);
+}
+
+TEST(ScanToNURBSFilter, BadInputGivesOneErrorAndNoOutput)
+{
+  const auto refused = [](vtkPolyData* input, const char* text)
+  {
+    vtkNew<vtkScanToNURBS> filter;
+    filter->SetInputDataObject(0, input);
+    ErrorLog log(filter);
+    filter->Update();
+    EXPECT_TRUE(log.saidOnce(text)) << log.text();
+    EXPECT_EQ(vtkPolyData::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfPoints(), 0);
+  };
+  refused(vtkNew<vtkPolyData>(), "fewer than 8 points");
+  const auto nan = scan(0.0);
+  nan->GetPoints()->SetPoint(3, NAN, 0, 0);
+  refused(nan, "NaN");
+}
