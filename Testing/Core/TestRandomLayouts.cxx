@@ -158,8 +158,12 @@ TEST(RandomLayouts, Range)
     flipped += o.Flipped > 0;
     offCount += !count;
     outcomes.push_back(o);
+    if (seed == last || outcomes.size() % 50 == 0)
+    {
+      std::printf("%zu shapes: %d invalid, %d with flipped quads, %d off the count by over 10 %%\n",
+        outcomes.size(), invalid, flipped, offCount);
+      printTable(outcomes);
+      std::fflush(stdout);
+    }
   }
-  std::printf("%zu shapes: %d invalid, %d with flipped quads, %d off the count by over 10 %%\n",
-    outcomes.size(), invalid, flipped, offCount);
-  printTable(outcomes);
 }
