@@ -232,7 +232,17 @@ inline std::array<std::vector<BodyBranch>, 2> bodyOf(StackKind kind, bsr::Counte
   if (kind != StackKind::OneTwoOne)
   {
     const double high = kind == StackKind::TwoOneTwo ? low + 2.0 : 10.0;
-    add(low, high, zero, away(0.0, 0.5), 2.2, 2.5);
+    const Vec2 top = away(0.0, 0.5);
+    const double wide = 2.2 * jitter();
+    body.push_back({low, high, zero, top, wide, 2.5 * jitter(), random.uniform(0.0, Tau)});
+    if (kind != StackKind::Tube) // rounded where the legs part
+    {
+      body.push_back({low - 1.2, low, zero, zero, 0.3 * wide, wide, body[0].Phase});
+    }
+    if (kind == StackKind::TwoOneTwo)
+    {
+      body.push_back({high, high + 1.2, top, top, body[0].EndRadius, 0.6, body[0].Phase});
+    }
   }
   const int legs = kind == StackKind::OneToThree ? 3 : kind == StackKind::Tube ? 0 : 2;
   for (int l = 0; l < legs; ++l)

@@ -1,0 +1,296 @@
+#include "Contour/SkinMeasure.h"
+
+#include "Spline/Evaluate.h"
+#include "Spline/SampleModel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bsr
+{
+namespace
+{
+using Segment = std::array<Vec3, 2>;
+
+double distanceTo(const std::vector<Segment>& segments, const Vec3& p)
+{
+  double best = std::numeric_limits<double>::infinity();
+  for (const Segment& s : segments)
+  {
+    const Vec3 d = s[1] - s[0];
+    const double l = d.squaredNorm();
+    const double t = l > 0.0 ? std::clamp(d.dot(p - s[0]) / l, 0.0, 1.0) : 0.0;
+    best = std::min(best, (s[0] + t * d - p).squaredNorm());
+  }
+  return std::sqrt(best);
+}
+
+/// Segments in which triangles meet a plane.
+std::vector<Segment> section(const std::vector<Vec3>& points,
+  const std::vector<std::array<int, 3>>& triangles, const Slice& slice)
+{
+  std::vector<double> h;
+  for (const Vec3& p : points)
+  {
+    h.push_back(slice.Normal.dot(p - slice.Origin));
+  }
+  std::vector<Segment> cut;
+  for (const auto& t : triangles)
+  {
+    std::vector<Vec3> ends;
+    for (int e = 0; e < 3; ++e)
+    {
+      const int i = t[e];
+      const int j = t[(e + 1) % 3];
+      if ((h[i] > 0.0) != (h[j] > 0.0))
+      {
+        const double share = h[i] / (h[i] - h[j]);
+        ends.emplace_back((1.0 - share) * points[i] + share * points[j]);
+      }
+    }
+    if (ends.size() == 2)
+    {
+      cut.push_back({ends[0], ends[1]});
+    }
+  }
+  return cut;
+}
+} // namespace
+
+void resliceErrors(const ContourStack& stack, const std::vector<Index>& contours,
+  const std::vector<Vec3>& points, const std::vector<std::array<int, 3>>& triangles,
+  SkinMeasures& out)
+{
+  std::vector<std::vector<Segment>> lines(stack.Slices.size());
+  for (const Index i : contours)
+  {
+    const Contour& c = stack.Contours[i];
+    for (std::size_t k = 0; k < c.Points.size(); ++k)
+    {
+      lines[c.Slice].push_back({c.Points[k], c.Points[(k + 1) % c.Points.size()]});
+    }
+  }
+  double sum = 0.0;
+  std::int64_t count = 0;
+  const auto add = [&](double d)
+  {
+    sum += d * d;
+    ++count;
+    out.ResliceMax = std::max(out.ResliceMax, d);
+  };
+  for (std::size_t s = 0; s < lines.size(); ++s)
+  {
+    const std::vector<Segment> cut =
+      lines[s].empty() ? std::vector<Segment>() : section(points, triangles, stack.Slices[s]);
+    for (const Segment& l : lines[s])
+    {
+      add(cut.empty() ? stack.meanDiameter() : distanceTo(cut, l[0]));
+    }
+    for (const Segment& l : cut)
+    {
+      add(distanceTo(lines[s], 0.5 * (l[0] + l[1])));
+    }
+  }
+  out.ResliceRms = count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0.0;
+}
+
+namespace
+{
+class Meter
+{
+public:
+  Meter(const ContourStack& stack, const SkinGrid& grid, const SkinSurface& surface)
+      : Stack(stack),
+        Grid(grid),
+        Surface(surface),
+        Model(modelOf(surface.Shape, surface.Control)),
+        Patch(Model.Patches[0])
+  {
+  }
+
+  SkinMeasures run()
+  {
+    this->sample();
+    std::vector<Index> contours;
+    for (const SkinRing& r : this->Grid.Rings)
+    {
+      if (r.Outer >= 0) // the border lies in its plane: no cut
+      {
+        contours.push_back(r.Contour);
+      }
+    }
+    resliceErrors(this->Stack, contours, this->Points, this->Triangles, this->Out);
+    this->jumps();
+    for (Index r = 0; r < static_cast<Index>(this->Grid.Rings.size()); ++r)
+    {
+      if (this->Grid.Rings[r].Core)
+      {
+        this->end(r);
+      }
+      this->signs(r);
+    }
+    return this->Out;
+  }
+
+private:
+  SurfacePoint at(const Vec2& uv) const
+  {
+    return evaluatePatch(this->Model, this->Patch, uv.x(), uv.y());
+  }
+
+  void sample()
+  {
+    constexpr int Fine = 4;
+    std::array<std::vector<double>, 2> t;
+    for (const int d : {0, 1})
+    {
+      const std::vector<double> ends = pieceEnds(this->Model, this->Patch, d);
+      for (std::size_t k = 0; k + 1 < ends.size(); ++k)
+      {
+        for (int i = 0; i < Fine; ++i)
+        {
+          t[d].push_back(ends[k] + (ends[k + 1] - ends[k]) * i / Fine);
+        }
+      }
+      t[d].push_back(ends.back());
+    }
+    for (const double v : t[1])
+    {
+      for (const double u : t[0])
+      {
+        this->Points.push_back(this->at({u, v}).Point);
+      }
+    }
+    const auto wide = static_cast<int>(t[0].size());
+    const auto high = static_cast<int>(t[1].size());
+    for (int j = 0; j + 1 < high; ++j)
+    {
+      for (int i = 0; i + 1 < wide; ++i)
+      {
+        const int k = j * wide + i;
+        this->Triangles.push_back({k, k + 1, k + wide + 1});
+        this->Triangles.push_back({k, k + wide + 1, k + wide});
+      }
+    }
+  }
+
+  void jumps()
+  {
+    double largest = 0.0;
+    double jump = 0.0;
+    for (const int d : {0, 1})
+    {
+      const std::vector<double> ends = pieceEnds(this->Model, this->Patch, d);
+      for (std::size_t k = 1; k + 1 < ends.size(); ++k)
+      {
+        const double step = 1e-9 * std::min(ends[k] - ends[k - 1], ends[k + 1] - ends[k]);
+        for (int i = 0; i <= 40; ++i)
+        {
+          const auto second = [&](double t)
+          {
+            const SurfacePoint p = this->at(d == 0 ? Vec2(t, i / 40.0) : Vec2(i / 40.0, t));
+            return d == 0 ? p.Duu : p.Dvv;
+          };
+          const Vec3 right = second(ends[k]);
+          jump = std::max(jump, (right - second(ends[k] - step)).norm());
+          largest = std::max(largest, right.norm());
+        }
+      }
+    }
+    this->Out.SecondDerivativeJump = largest > 0.0 ? jump / largest : 0.0;
+  }
+
+  /// Height and convexity of the end of a leg, at the points that close it.
+  void end(Index r)
+  {
+    const Vec3 out = this->Grid.CapDirection[r];
+    const Vec3 origin =
+      this->Stack.Slices[this->Stack.Contours[this->Grid.Rings[r].Contour].Slice].Origin;
+    double top = 0.0;
+    std::vector<SurfacePoint> points;
+    for (const SkinSample& s : this->Surface.Samples)
+    {
+      if (s.Cap && !s.Bridge && s.Ring == r)
+      {
+        points.push_back(this->at(s.Sample.UV));
+        top = std::max(top, out.dot(points.back().Point - origin));
+      }
+    }
+    // convex where nothing of the end lies above the tangent plane
+    double convex = 0.0;
+    for (const SurfacePoint& p : points)
+    {
+      const Vec3 n = p.normal().normalized() * (p.normal().dot(out) < 0.0 ? -1.0 : 1.0);
+      double above = 0.0;
+      for (const SurfacePoint& q : points)
+      {
+        above = std::max(above, n.dot(q.Point - p.Point));
+      }
+      convex += above <= 0.05 * this->Grid.CapRoom[r] ? 1.0 : 0.0;
+    }
+    if (!points.empty())
+    {
+      this->Out.ConvexShare =
+        std::min(this->Out.ConvexShare, convex / static_cast<double>(points.size()));
+    }
+    if (this->Grid.CapRoom[r] > 0.0)
+    {
+      this->Out.EndHeight = std::max(this->Out.EndHeight, top / this->Grid.CapRoom[r]);
+    }
+  }
+
+  static int signChanges(const std::vector<Vec2>& curve)
+  {
+    const std::size_t n = curve.size();
+    std::vector<double> turn;
+    for (std::size_t i = 0; n > 3 && i < n; ++i)
+    {
+      const Vec2 a = curve[(i + 1) % n] - curve[i];
+      const Vec2 b = curve[(i + 2) % n] - curve[(i + 1) % n];
+      const double t = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+      if (std::abs(t) > 1e-3) // straight is no sign
+      {
+        turn.push_back(t);
+      }
+    }
+    int changes = 0;
+    for (std::size_t i = 0; i < turn.size(); ++i)
+    {
+      changes += turn[i] * turn[(i + 1) % turn.size()] < 0.0 ? 1 : 0;
+    }
+    return changes;
+  }
+
+  void signs(Index r)
+  {
+    std::vector<Vec2> data;
+    std::vector<Vec2> model;
+    for (const SkinSample& s : this->Surface.Samples)
+    {
+      if (!s.Cap && s.Ring == r)
+      {
+        data.push_back(this->Stack.flat(s.Sample.Point));
+        model.push_back(this->Stack.flat(this->at(s.Sample.UV).Point));
+      }
+    }
+    this->Out.SignChangesData += signChanges(data);
+    this->Out.SignChangesModel += signChanges(model);
+  }
+
+  const ContourStack& Stack;
+  const SkinGrid& Grid;
+  const SkinSurface& Surface;
+  SplineModel Model;
+  const SplinePatch& Patch;
+  std::vector<Vec3> Points;
+  std::vector<std::array<int, 3>> Triangles;
+  SkinMeasures Out;
+};
+} // namespace
+
+SkinMeasures measureSkin(
+  const ContourStack& stack, const SkinGrid& grid, const SkinSurface& surface)
+{
+  return Meter(stack, grid, surface).run();
+}
+} // namespace bsr

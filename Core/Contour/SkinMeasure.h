@@ -1,0 +1,30 @@
+#pragma once
+
+#include "Contour/SkinFit.h"
+
+namespace bsr
+{
+/// What a finished skin is measured by. Lengths are in world units.
+struct SkinMeasures
+{
+  double ResliceRms = 0.0; ///< between the contours and the surface cut by their planes
+  double ResliceMax = 0.0;
+  /// Largest jump of a second derivative across a knot over the largest second derivative.
+  double SecondDerivativeJump = 0.0;
+  double EndHeight = 0.0;   ///< highest end of a leg over its last contour, in slice distances
+  double ConvexShare = 1.0; ///< share of an end's points with the end below their tangent
+                            ///< planes (by a twentieth of a slice distance), of the worst leg
+  int SignChangesData = 0;  ///< of the curvature along the contours
+  int SignChangesModel = 0; ///< along the surface at the same samples
+};
+
+/// ResliceRms and ResliceMax of a triangulated surface: it is cut by the planes of the contours,
+/// and distances are taken both ways. A contour that the surface misses counts as a mean diameter.
+void resliceErrors(const ContourStack& stack, const std::vector<Index>& contours,
+  const std::vector<Vec3>& points, const std::vector<std::array<int, 3>>& triangles,
+  SkinMeasures& out);
+
+/// Measures a fitted skin against its contours.
+SkinMeasures measureSkin(
+  const ContourStack& stack, const SkinGrid& grid, const SkinSurface& surface);
+} // namespace bsr
