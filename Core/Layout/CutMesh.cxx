@@ -439,7 +439,8 @@ std::vector<Index> CutMesh::sector(const LayoutGraph& graph, Index vertex, Index
   return ring;
 }
 
-/// A side over free vertices, near the straight line between its corners or anywhere.
+/// A side over free vertices, within its length of the straight line between its corners, or three
+/// times as far.
 bool CutMesh::traceSide(const QuadMesh& layout, const LayoutGraph& graph, Index edge, bool near)
 {
   const TriangleSurface& s = this->Surface;
@@ -489,7 +490,7 @@ bool CutMesh::traceSide(const QuadMesh& layout, const LayoutGraph& graph, Index 
     {
       break;
     }
-    if (near && toSegment(s.Points[v], pa, pb) > length)
+    if (toSegment(s.Points[v], pa, pb) > (near ? 1.0 : 3.0) * length)
     {
       continue;
     }

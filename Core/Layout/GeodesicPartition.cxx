@@ -18,7 +18,7 @@ namespace bsr
 namespace
 {
 constexpr double EdgeShare = 0.14; ///< longest edge of the refined mesh, of a quad's mean side
-constexpr int Attempts = 5;        ///< orders of the sides that are tried
+constexpr int Attempts = 3;        ///< orders of the sides that are tried
 constexpr double Margin = 0.04;    ///< paths keep this share of an edge away from its ends
 constexpr double Shore = 0.15;     ///< of a side's length: nearer to other sides it is slow
 
