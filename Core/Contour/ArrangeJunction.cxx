@@ -37,6 +37,7 @@ public:
     {
       const Vec3 p = stem.at(static_cast<double>(i) / StemSamples);
       std::vector<double> away;
+      away.reserve(branches.size());
       for (const ArcCurve& b : branches)
       {
         away.push_back((b.at(b.nearest(p)) - p).norm());

@@ -524,13 +524,14 @@ private:
           a.share() + a.length() * ((1.0 - r) * a.places()[i] + r * a.places()[i + 1])});
       }
     }
-    std::vector<double> top;
+    std::vector<std::vector<double>> out(1);
+    std::vector<double>& top = out[0];
+    top.reserve(static_cast<std::size_t>(n));
     for (int u = 0; u < n; ++u)
     {
       top.push_back(anchors.empty() ? l.Start.back() + static_cast<double>(u) / n
                                     : ColumnMap(anchors, n).at(u));
     }
-    std::vector<std::vector<double>> out(1, std::move(top));
     for (std::size_t k = l.Curves.size() - 1; k > 0; --k)
     {
       out.push_back(this->carriedAll(l, k, false, out.back()));

@@ -406,6 +406,7 @@ private:
     const std::array<int, 2>& spans, const std::array<int, 2>& u, const std::array<int, 2>& v)
   {
     std::vector<ControlRow> rows;
+    rows.reserve(net.size());
     for (const ControlRow& r : net)
     {
       rows.push_back(curvePiece({clampedKnots(order, spans[0]), r}, order, u[0], u[1]).Points);

@@ -33,6 +33,7 @@ std::vector<ControlRow> endRowsOver(const BranchedNetwork& net, Index t, int end
   {
     const int from = ((column - first) % tube.Columns + tube.Columns) % tube.Columns;
     std::vector<ControlRow> out;
+    out.reserve(rows.size());
     for (const ControlRow& r : rows)
     {
       out.push_back(curvePiece({clampedKnots(order, total), r}, order, from, from + spans).Points);

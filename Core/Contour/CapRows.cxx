@@ -81,7 +81,7 @@ class CapMaker
 public:
   CapMaker(
     const EndRows& end, const std::vector<int>& corners, const Vec3& tip, const RowOptions& options)
-      : Tip(tip), Options(options), Sites(rowSites(options)), Corners(corners)
+      : Tip(tip), Options(options), Sites(rowSites(options))
   {
     const auto n = static_cast<int>(end.Last->size());
     for (const Vec3& p : *end.Last)
@@ -230,7 +230,6 @@ private:
   const Vec3 Tip;
   const RowOptions& Options;
   const RowSites Sites;
-  const std::vector<int>& Corners;
   Vec3 Center = Vec3::Zero();
   std::vector<int> Spans;
   std::vector<ControlRow> Last;

@@ -157,6 +157,7 @@ private:
     p.DegreeV = this->Surface.OrderV - 1;
     p.CountU = static_cast<int>(this->Curves[t][0].size());
     std::vector<KnotCurve> columns;
+    columns.reserve(this->Curves[t][0].size());
     for (int i = 0; i < p.CountU; ++i)
     {
       columns.push_back(

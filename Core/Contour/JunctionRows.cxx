@@ -346,7 +346,6 @@ private:
       // As published: the loop passes the crotch along the shared edge, or in a corner (repeated
       // control points).
       return this->Out.Hubs[hub].Kind == JunctionKind::Asymmetric ? Vec3(Vec3::Zero())
-             : end                                                ? Vec3(this->arm(hub, 4 * k))
                                                                   : Vec3(this->arm(hub, 4 * k));
     }
     return this->arm(hub, end ? 4 * k - 1 : 4 * k + 1);
@@ -414,8 +413,8 @@ private:
   Vec3 stepAcross(std::size_t a, std::size_t i, const Column& c, const ControlRow& loop) const
   {
     const double t = this->Sites.share(1);
-    const Vec3 natural = 0.5 * (this->natural(a, i, c.Share + (1.0 - c.Share) * t) -
-                                 this->natural(a, i, c.Share * (1.0 - t)));
+    Vec3 natural = 0.5 * (this->natural(a, i, c.Share + (1.0 - c.Share) * t) -
+                           this->natural(a, i, c.Share * (1.0 - t)));
     if (!this->inSpace() || c.Weight == 0.0 || i == 0 || i + 1 == loop.size())
     {
       return natural;
@@ -473,6 +472,7 @@ private:
     const JunctionHub& hub = this->J.Hubs[h];
     const auto m = static_cast<int>(hub.Seams.size());
     std::vector<Vec3> arms;
+    arms.reserve(static_cast<std::size_t>(4 * m));
     for (int k = 0; k < 4 * m; ++k)
     {
       arms.push_back(this->arm(h, k));
