@@ -4,7 +4,7 @@
 
 namespace bsr
 {
-/// alpha(0) = A and alpha(1) = -B of an inner edge, from its two vertices (vertexAlpha).
+/// alpha(0) = A and alpha(1) = -B of an inner edge, from its two vertices (VertexFrames).
 struct EdgeAlpha
 {
   double A = 0.0;

@@ -10,8 +10,6 @@ namespace bsr
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
-
 /// Columns: an orthonormal basis of the vectors of size n orthogonal to (1, -1, 1, ...).
 Eigen::MatrixXd alternatingComplement(int n)
 {
@@ -27,14 +25,20 @@ Eigen::MatrixXd alternatingComplement(int n)
 class Builder
 {
 public:
-  Builder(const QuadComplex& complex, const PatchNet& net, EdgeRule rule)
-      : Complex(complex), Net(net), Rule(rule), N(net.side()), Form(net.points())
+  Builder(const QuadComplex& complex, const PatchNet& net, EdgeRule rule, const Creases& creases)
+      : Complex(complex),
+        Net(net),
+        Rule(rule),
+        Marks(creases),
+        Frames(complex, creases),
+        N(net.side()),
+        Form(net.points())
   {
   }
 
   SplineSpace build()
   {
-    this->TauOf.assign(this->Complex.vertices(), LinearForm());
+    this->TauOf.resize(this->Complex.vertices());
     for (Index v = 0; v < this->Complex.vertices(); ++v)
     {
       if (this->Complex.fan(v).faces() > 0)
@@ -44,7 +48,7 @@ public:
     }
     for (Index v = 0; v < this->Complex.vertices(); ++v)
     {
-      this->coupledUnknowns(this->Complex.fan(v));
+      this->coupledUnknowns(v);
     }
     for (Index e = 0; e < this->Complex.edges(); ++e)
     {
@@ -54,7 +58,10 @@ public:
     {
       if (this->Complex.fan(v).faces() > 0)
       {
-        this->twists(v);
+        for (std::size_t s = 0; s < this->Frames.at(v).Sectors.size(); ++s)
+        {
+          this->twists(this->Frames.at(v).Sectors[s].Fan, this->TauOf[v][s]);
+        }
       }
     }
     for (Index e = 0; e < this->Complex.edges(); ++e)
@@ -77,61 +84,51 @@ private:
   }
   LinearForm freePoint(Index point) { return this->unknown(LinearForm(point)); }
 
-  static bool coupled(const VertexFan& fan)
+  bool coupled(Index v) const
   {
-    return fan.Closed && fan.faces() >= 6 && fan.faces() % 2 == 0;
+    const auto& sectors = this->Frames.at(v).Sectors;
+    const int n = this->Complex.fan(v).faces();
+    return !sectors.empty() && sectors[0].Fan.Closed && n >= 6 && n % 2 == 0;
   }
+
+  /// An edge across which the tangent planes agree.
+  bool smooth(Index e) const { return this->Complex.edge(e).Second >= 0 && !this->Marks.at(e); }
 
   void vertexUnknowns(Index v)
   {
     const VertexFan& fan = this->Complex.fan(v);
     const Index p = this->Net.spoke(fan, 0, 0);
     this->Form[p] = this->freePoint(p);
-    const int spokes = fan.spokes();
-    if (!fan.Closed && fan.faces() == 1)
+    this->tangents(fan, p, this->Frames.at(v).Tangents);
+    for (const VertexSector& s : this->Frames.at(v).Sectors)
     {
-      for (int k = 0; k < 2; ++k)
-      {
-        const Index d1 = this->Net.spoke(fan, k, 1);
-        LinearForm read(d1);
-        this->Form[d1] = this->unknown(read.add(LinearForm(p), -1.0)).add(this->Form[p]);
-      }
-    }
-    else
-    {
-      this->tangentPlane(fan, p, spokes);
-    }
-    if (!fan.Closed || fan.faces() % 2 == 0)
-    {
-      this->TauOf[v] = this->unknown(this->readTau(fan, p));
+      const bool free = !s.Fan.Closed || s.Fan.faces() % 2 == 0;
+      this->TauOf[v].push_back(free ? this->unknown(this->readTau(s.Fan, p)) : LinearForm());
     }
   }
 
-  /// d1_k = p + cos(k angle) a + sin(k angle) b, read by least squares.
-  void tangentPlane(const VertexFan& fan, Index p, int spokes)
+  /// d1_k = p + sum_j t(k, j) x_j, read by least squares.
+  void tangents(const VertexFan& fan, Index p, const Eigen::MatrixXd& t)
   {
-    const double angle = (fan.Closed ? 2.0 : 1.0) * Pi / fan.faces();
-    Eigen::MatrixXd t(spokes, 2);
-    for (int k = 0; k < spokes; ++k)
-    {
-      t(k, 0) = std::cos(k * angle);
-      t(k, 1) = std::sin(k * angle);
-    }
     const Eigen::MatrixXd inverse = (t.transpose() * t).inverse() * t.transpose();
-    LinearForm axis[2];
-    for (int a = 0; a < 2; ++a)
+    std::vector<LinearForm> axis;
+    for (Eigen::Index a = 0; a < t.cols(); ++a)
     {
       LinearForm read(p, -inverse.row(a).sum());
-      for (int k = 0; k < spokes; ++k)
+      for (int k = 0; k < fan.spokes(); ++k)
       {
         read.add(LinearForm(this->Net.spoke(fan, k, 1)), inverse(a, k));
       }
-      axis[a] = this->unknown(std::move(read));
+      axis.push_back(this->unknown(std::move(read)));
     }
-    for (int k = 0; k < spokes; ++k)
+    for (int k = 0; k < fan.spokes(); ++k)
     {
-      this->Form[this->Net.spoke(fan, k, 1)] =
-        combine({{1.0, &this->Form[p]}, {t(k, 0), &axis[0]}, {t(k, 1), &axis[1]}});
+      LinearForm d = this->Form[p];
+      for (Eigen::Index a = 0; a < t.cols(); ++a)
+      {
+        d.add(axis[a], t(k, a));
+      }
+      this->Form[this->Net.spoke(fan, k, 1)] = d;
     }
   }
 
@@ -155,9 +152,10 @@ private:
   int coupledIndex() const { return this->Rule == EdgeRule::Quadratic ? 3 : 2; }
 
   /// Closed even valence >= 6: the twists exist only if sum (-1)^k c_k = 0.
-  void coupledUnknowns(const VertexFan& fan)
+  void coupledUnknowns(Index v)
   {
-    if (!coupled(fan))
+    const VertexFan& fan = this->Complex.fan(v);
+    if (!this->coupled(v))
     {
       return;
     }
@@ -197,14 +195,15 @@ private:
   void edgeCurve(Index e)
   {
     const QuadEdge& edge = this->Complex.edge(e);
-    const VertexFan& from = this->Complex.fan(this->Complex.from(edge.First));
-    const VertexFan& to = this->Complex.fan(this->Complex.to(edge.First));
-    const bool inner = edge.Second >= 0;
-    const EdgeAlpha alpha{inner ? vertexAlpha(from) : 0.0, inner ? vertexAlpha(to) : 0.0};
+    const Index from = this->Complex.from(edge.First);
+    const Index to = this->Complex.to(edge.First);
+    const bool inner = this->smooth(e);
+    const EdgeAlpha alpha{
+      inner ? this->Frames.alpha(edge.First) : 0.0, inner ? this->Frames.alpha(edge.Second) : 0.0};
     for (int c = 2; c < this->N - 2; ++c)
     {
-      const bool isCoupled = (coupled(from) && c == this->coupledIndex()) ||
-                             (coupled(to) && c == this->N - 1 - this->coupledIndex());
+      const bool isCoupled = (this->coupled(from) && c == this->coupledIndex()) ||
+                             (this->coupled(to) && c == this->N - 1 - this->coupledIndex());
       if (!isCoupled && !isPivot(this->Rule, alpha, this->N, c))
       {
         const Index point = this->Net.row(edge.First, 0, c);
@@ -229,9 +228,8 @@ private:
     return r.add(this->Form[this->Net.spoke(fan, k, 1)], 2.0);
   }
 
-  void twists(Index v)
+  void twists(const VertexFan& fan, const LinearForm& tau)
   {
-    const VertexFan& fan = this->Complex.fan(v);
     const int n = fan.faces();
     std::vector<LinearForm> w(n);
     if (fan.Closed && n % 2 == 1)
@@ -253,11 +251,11 @@ private:
     {
       w[0] = combine({{1.0, &this->Form[this->Net.spoke(fan, 0, 1)]},
         {1.0, &this->Form[this->Net.spoke(fan, 1, 1)]},
-        {-1.0, &this->Form[this->Net.spoke(fan, 0, 0)]}, {1.0, &this->TauOf[v]}});
+        {-1.0, &this->Form[this->Net.spoke(fan, 0, 0)]}, {1.0, &tau}});
     }
     else
     {
-      this->alternatingTwists(fan, this->TauOf[v], w);
+      this->alternatingTwists(fan, tau, w);
     }
     for (int k = 0; k < n; ++k)
     {
@@ -290,12 +288,16 @@ private:
     for (int c = 2; c < this->N - 2; ++c)
     {
       const Index p = this->Net.row(edge.First, 1, c);
-      if (edge.Second < 0)
+      const Index q = edge.Second < 0 ? -1 : this->Net.row(edge.Second, 1, this->N - 1 - c);
+      if (!this->smooth(e))
       {
         this->Form[p] = this->freePoint(p);
+        if (q >= 0)
+        {
+          this->Form[q] = this->freePoint(q);
+        }
         continue;
       }
-      const Index q = this->Net.row(edge.Second, 1, this->N - 1 - c);
       LinearForm read(p, 0.5);
       const LinearForm delta = this->unknown(read.add(LinearForm(q), -0.5));
       LinearForm middle = this->Form[this->Net.row(edge.First, 0, c)];
@@ -323,11 +325,13 @@ private:
   const QuadComplex& Complex;
   const PatchNet& Net;
   EdgeRule Rule;
+  const Creases& Marks;
+  VertexFrames Frames;
   int N;
-  std::vector<LinearForm> Form;             ///< of each net point, over unknowns
-  std::vector<LinearForm> Read;             ///< of each unknown, over net points
-  std::vector<LinearForm> TauOf;            ///< of each vertex
-  std::vector<std::vector<LinearForm>> Sum; ///< P + Q - 2 d of each inner edge
+  std::vector<LinearForm> Form;               ///< of each net point, over unknowns
+  std::vector<LinearForm> Read;               ///< of each unknown, over net points
+  std::vector<std::vector<LinearForm>> TauOf; ///< of each sector of each vertex
+  std::vector<std::vector<LinearForm>> Sum;   ///< P + Q - 2 d of each inner edge
 };
 } // namespace
 
@@ -336,34 +340,26 @@ EdgeRule defaultRule(int segments)
   return segments == 3 ? EdgeRule::Linear : EdgeRule::Quadratic;
 }
 
-double vertexAlpha(const VertexFan& fan)
+SplineSpace makeG1Space(
+  const QuadComplex& complex, const PatchNet& net, EdgeRule rule, const Creases& creases)
 {
-  const int n = fan.faces();
-  if (n == (fan.Closed ? 4 : 2))
-  {
-    return 0.0;
-  }
-  return 2.0 * std::cos((fan.Closed ? 2.0 : 1.0) * Pi / n);
+  return Builder(complex, net, rule, creases).build();
 }
 
-SplineSpace makeG1Space(const QuadComplex& complex, const PatchNet& net, EdgeRule rule)
+SparseRows g1Constraints(
+  const QuadComplex& complex, const PatchNet& net, EdgeRule rule, const Creases& creases)
 {
-  return Builder(complex, net, rule).build();
-}
-
-SparseRows g1Constraints(const QuadComplex& complex, const PatchNet& net, EdgeRule rule)
-{
+  const VertexFrames frames(complex, creases);
   const int n = net.side();
   std::vector<LinearForm> rows;
   for (Index e = 0; e < complex.edges(); ++e)
   {
     const QuadEdge& edge = complex.edge(e);
-    if (edge.Second < 0)
+    if (edge.Second < 0 || creases.at(e))
     {
       continue;
     }
-    const EdgeAlpha alpha{vertexAlpha(complex.fan(complex.from(edge.First))),
-      vertexAlpha(complex.fan(complex.to(edge.First)))};
+    const EdgeAlpha alpha{frames.alpha(edge.First), frames.alpha(edge.Second)};
     std::vector<LinearForm> d(n);
     for (int c = 0; c < n; ++c)
     {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Spline/PatchNet.h"
+#include "Spline/VertexFrames.h"
 
 namespace bsr
 {
@@ -17,18 +18,17 @@ enum class EdgeRule
 /// The rule of choice for a number of segments.
 EdgeRule defaultRule(int segments);
 
-/// alpha at a vertex: 2 cos(2 pi / valence), on a border 2 cos(pi / faces); exactly 0 where
-/// regular.
-double vertexAlpha(const VertexFan& fan);
-
 /**
  * The whole space of nets whose surface has continuous tangent planes, by an explicit local basis:
- * net = Basis * x. For every mix of valences >= 3 and for borders. Sparse (2 to 6 entries a row)
+ * net = Basis * x. For every mix of valences >= 3, for borders and for creases (across which only
+ * the curve is shared). Sparse (2 to 6 entries a row)
  * and well conditioned; Reader recovers x from a net of the space (and projects any other net). The
  * columns are linearly independent; their number is the dimension of the space.
  */
-SplineSpace makeG1Space(const QuadComplex& complex, const PatchNet& net, EdgeRule rule);
+SplineSpace makeG1Space(
+  const QuadComplex& complex, const PatchNet& net, EdgeRule rule, const Creases& creases = {});
 
 /// The G1 conditions themselves as rows over net points (redundant); zero on the space.
-SparseRows g1Constraints(const QuadComplex& complex, const PatchNet& net, EdgeRule rule);
+SparseRows g1Constraints(
+  const QuadComplex& complex, const PatchNet& net, EdgeRule rule, const Creases& creases = {});
 } // namespace bsr

@@ -156,6 +156,43 @@ TEST(G1Space, DimensionIsThatOfTheWholeSpace)
   }
 }
 
+/// Creases of every kind: a closed one through regular vertices, corners, ends at a border, random.
+TEST(G1Space, CreasesCutTheTangentPlanesOnly)
+{
+  std::mt19937 random(4);
+  for (const QuadMesh& mesh : {meshes::cube(), meshes::torus(5, 5), meshes::branch(),
+         meshes::cross(), meshes::tube(5, 3), meshes::trapezohedron(6)})
+  {
+    const QuadComplex c = complexOf(mesh);
+    const PatchNet net(c, 3);
+    for (int kind = 0; kind < 6; ++kind)
+    {
+      Creases creases;
+      creases.Vertices = mesh.Points;
+      creases.Edge.assign(c.edges(), kind == 0);
+      for (Index e = 0; e < c.edges() && kind > 0; ++e)
+      {
+        creases.Edge[e] = random() % 6 < static_cast<unsigned>(kind);
+      }
+      pruneCreases(c, creases.Edge);
+      for (const EdgeRule rule : {EdgeRule::Quadratic, EdgeRule::Linear})
+      {
+        const SplineSpace s = makeG1Space(c, net, rule, creases);
+        const SparseRows g = g1Constraints(c, net, rule, creases);
+        const int rank = g.rows() ? denseRank(Eigen::MatrixXd(g)) : 0;
+        EXPECT_EQ(s.Basis.cols(), net.points() - rank) << kind;
+        const SparseRows gb = g * s.Basis;
+        EXPECT_LE(gb.coeffs().size() ? gb.coeffs().abs().maxCoeff() : 0.0, 1e-12);
+        const SparseRows rb = s.Reader * s.Basis;
+        EXPECT_LE((Eigen::MatrixXd(rb) - Eigen::MatrixXd::Identity(rb.rows(), rb.cols()))
+                    .cwiseAbs()
+                    .maxCoeff(),
+          1e-12);
+      }
+    }
+  }
+}
+
 TEST(G1Space, AnyNumberOfSegments)
 {
   for (const int m : {3, 4, 5})
