@@ -156,6 +156,7 @@ void totalsTo(const bsr::G1FitResult& r, double seconds, bool rational, vtkField
   bsr::addField(field, "RMS", r.Rms);
   bsr::addField(field, "Max", r.Max);
   bsr::addField(field, "MaxNormalJump", r.MaxNormalJump);
+  bsr::addField(field, "CreaseEdges", r.CreaseEdges);
   bsr::addField(field, "FoldedPatches", r.FoldedPatches);
   bsr::addField(field, "Unknowns", static_cast<double>(r.Unknowns));
   bsr::addField(field, "OpenEnds", r.OpenEndCount);
@@ -249,6 +250,7 @@ int vtkBSplineG1Fit::RequestData(
   o.Correction = static_cast<bsr::CorrectionMethod>(this->ParameterCorrection);
   o.Ends = static_cast<bsr::OpenEnds>(this->OpenEnds);
   o.DataWeight = this->DataWeight;
+  o.CreaseAngle = this->CreaseAngle;
   o.CorrelatedNoise = this->CorrelatedNoise;
   o.Robust = this->RobustWeights;
   o.Reassign = this->MovePoints;
@@ -293,6 +295,7 @@ void vtkBSplineG1Fit::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ParameterCorrection: " << this->ParameterCorrection << "\n";
   os << indent << "OpenEnds: " << this->OpenEnds << "\n";
   os << indent << "DataWeight: " << this->DataWeight << "\n";
+  os << indent << "CreaseAngle: " << this->CreaseAngle << "\n";
   os << indent << "CorrelatedNoise: " << this->CorrelatedNoise << "\n";
   os << indent << "RobustWeights: " << this->RobustWeights << "\n";
   os << indent << "MovePoints: " << this->MovePoints << "\n";

@@ -125,6 +125,14 @@ public:
   ///@}
 
   ///@{
+  /// Degrees: sides of patches along which the points have a sharper edge stay sharp (FULL_G1
+  /// only); the layout must run along such edges (FeatureAngle of vtkQuadRemesh). Default 180:
+  /// none.
+  vtkSetMacro(CreaseAngle, double);
+  vtkGetMacro(CreaseAngle, double);
+  ///@}
+
+  ///@{
   /// With DataWeight 0: the points' roughness extends over neighbors, as that of CT surfaces does;
   /// switch it off for clean scans, which are then followed more closely. Default on.
   vtkSetMacro(CorrelatedNoise, bool);
@@ -211,6 +219,7 @@ private:
   int ParameterCorrection = TAYLOR;
   int OpenEnds = AUTOMATIC;
   double DataWeight = 0.0;
+  double CreaseAngle = 180.0;
   bool CorrelatedNoise = true;
   bool RobustWeights = true;
   bool MovePoints = true;

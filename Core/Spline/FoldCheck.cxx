@@ -80,7 +80,8 @@ PatchShape checkShape(const RationalPatch& patch)
   return shapeOf([&](int i, int j) { return patch.at(i / (Samples - 1.0), j / (Samples - 1.0)); });
 }
 
-double largestNormalJump(const QuadComplex& complex, const NetEvaluator& evaluator)
+double largestNormalJump(
+  const QuadComplex& complex, const NetEvaluator& evaluator, const Creases& creases)
 {
   const auto normalAt = [&](Index h, double t)
   {
@@ -95,7 +96,8 @@ double largestNormalJump(const QuadComplex& complex, const NetEvaluator& evaluat
       for (std::int64_t e = begin; e < end; ++e)
       {
         const QuadEdge& edge = complex.edge(static_cast<Index>(e));
-        for (int s = 0; s <= 24 && edge.Second >= 0; ++s)
+        const bool smooth = edge.Second >= 0 && !creases.at(static_cast<Index>(e));
+        for (int s = 0; s <= 24 && smooth; ++s)
         {
           const Vec3 a = normalAt(edge.First, s / 24.0);
           const Vec3 b = normalAt(edge.Second, 1.0 - s / 24.0);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Spline/FitPoints.h"
+#include "Spline/VertexFrames.h"
 
 namespace bsr
 {
@@ -18,6 +19,8 @@ bool normalsFold(const std::vector<Vec3>& normals, int grid);
 std::vector<PatchShape> checkShapes(const PatchNet& net, const NetPoints& surface);
 PatchShape checkShape(const RationalPatch& patch);
 
-/// Largest angle in degrees between the normals of two patches along their common sides.
-double largestNormalJump(const QuadComplex& complex, const NetEvaluator& surface);
+/// Largest angle in degrees between the normals of two patches along their common sides that are no
+/// creases.
+double largestNormalJump(
+  const QuadComplex& complex, const NetEvaluator& surface, const Creases& creases);
 } // namespace bsr

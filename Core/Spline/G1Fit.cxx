@@ -1,6 +1,7 @@
 #include "Spline/G1Fit.h"
 
 #include "Spline/CoverageEnds.h"
+#include "Spline/CreaseEdges.h"
 #include "Spline/FoldCheck.h"
 #include "Spline/LayoutEnds.h"
 #include "Spline/ModelBuilder.h"
@@ -37,6 +38,10 @@ Status checkOptions(const G1FitOptions& o)
         "A Fairing value is " + std::to_string(l) + "; all must lie between 0 and 1, exclusive.");
     }
   }
+  if (!(o.CreaseAngle > 0.0))
+  {
+    return Status::invalidParameter("CreaseAngle must be above 0 degrees (180: no creases).");
+  }
   if (!(o.DataWeight >= 0.0) || !std::isfinite(o.DataWeight))
   {
     return Status::invalidParameter("DataWeight must be 0 (automatic) or a positive number.");
@@ -44,8 +49,8 @@ Status checkOptions(const G1FitOptions& o)
   return Status::ok();
 }
 
-std::unique_ptr<FitSolver> makeSolver(
-  const QuadComplex& complex, const PatchNet& net, Continuity continuity, SplineSpace& space)
+std::unique_ptr<FitSolver> makeSolver(const QuadComplex& complex, const PatchNet& net,
+  Continuity continuity, const Creases& creases, SplineSpace& space)
 {
   if (continuity == Continuity::C0Multipliers)
   {
@@ -57,7 +62,7 @@ std::unique_ptr<FitSolver> makeSolver(
   }
   else
   {
-    space = makeG1Space(complex, net, defaultRule(net.segments()));
+    space = makeG1Space(complex, net, defaultRule(net.segments()), creases);
     if (continuity == Continuity::VertexG1)
     {
       space = makeVertexSpace(complex, net, space);
@@ -162,8 +167,9 @@ private:
   Result<G1FitResult> fitShells(const QuadComplex& complex)
   {
     const PatchNet net(complex, this->Options.Segments);
+    this->findCreases(complex);
     SplineSpace space;
-    const auto solver = makeSolver(complex, net, this->Options.Smoothness, space);
+    const auto solver = makeSolver(complex, net, this->Options.Smoothness, this->Sharp, space);
     this->Out.Unknowns = solver->unknowns();
     const ShellLayout layout{&complex, &net, &this->Full.Points};
     std::vector<ShellFitResult> shells;
@@ -222,6 +228,20 @@ private:
     }
     this->finish(complex, net, shells, *own);
     return std::move(this->Out);
+  }
+
+  /// Sharp edges of the outer wall, where they are wanted.
+  void findCreases(const QuadComplex& complex)
+  {
+    if (this->Options.Smoothness != Continuity::FullG1 || !(this->Options.CreaseAngle < 180.0))
+    {
+      return;
+    }
+    auto points = selectPoints(this->Input, this->Full, this->Cut, 0);
+    sortByPatch(points, complex.faces());
+    this->Sharp = bsr::findCreases(complex, this->Full.Points, points, this->Options.CreaseAngle);
+    this->Out.CreaseEdges =
+      static_cast<int>(std::count(this->Sharp.Edge.begin(), this->Sharp.Edge.end(), 1));
   }
 
   /// One a shell; empty ones where patches are not to be rational.
@@ -354,7 +374,7 @@ private:
       this->Out.Max = std::max(this->Out.Max, t.Max);
       this->Out.FoldedPatches += shells[s].Folded + shells[s].FoldedWalls;
       this->Out.MaxNormalJump = std::max(this->Out.MaxNormalJump,
-        largestNormalJump(complex, NetEvaluator(net, shells[s].Net, &own[s].Patches)));
+        largestNormalJump(complex, NetEvaluator(net, shells[s].Net, &own[s].Patches), this->Sharp));
     }
     this->Out.Rms = count > 0 ? std::sqrt(squares / count) : 0.0;
     std::vector<std::vector<RationalPatch>> patches;
@@ -378,6 +398,7 @@ private:
   const G1FitOptions& Options;
   Monitor& Watch;
   CutLayout Cut;
+  Creases Sharp;
   G1FitResult Out;
 };
 

@@ -46,6 +46,9 @@ struct G1FitOptions
   CorrectionMethod Correction = CorrectionMethod::Taylor;
   OpenEnds Ends = OpenEnds::Automatic;
   double DataWeight = 0.0; ///< K, points a patch that the data count as; 0: from the noise
+  /// Degrees: sides of patches along which the points have a sharper edge stay sharp (FullG1 only);
+  /// the layout must run along such edges. 180: none.
+  double CreaseAngle = 180.0;
   /// With DataWeight 0: the points' roughness extends over neighbors, as that of CT surfaces does;
   /// off for clean scans, where what neighbors share is shape.
   bool CorrelatedNoise = true;
@@ -90,7 +93,8 @@ struct G1FitResult
   std::vector<ShellSummary> Shells; ///< outer, inner where fitted
   double Rms = 0.0;                 ///< of all counting points, world units
   double Max = 0.0;
-  double MaxNormalJump = 0.0; ///< degrees
+  double MaxNormalJump = 0.0; ///< degrees, across sides that are no creases
+  int CreaseEdges = 0;        ///< sides of patches that stay sharp
   int FoldedPatches = 0;
   int OpenEndCount = 0;
   std::int64_t Unknowns = 0;     ///< of one shell's system

@@ -46,10 +46,12 @@ public:
     this->findCuts();
     const int spokes = this->Fan.spokes();
     const auto sectors = static_cast<int>(this->Cuts.size()) - (this->Fan.Closed ? 0 : 1);
-    if (this->Cuts.empty())
+    if (this->Fan.Closed && this->Cuts.size() <= 1)
     {
+      // A crease that ends here only leaves the patches beside it free of each other.
       const double angle = 2.0 * Pi / this->Fan.faces();
-      this->Frame.Sectors.push_back({this->Fan, alphaOf(angle)});
+      this->Frame.Sectors.push_back(
+        {this->Cuts.empty() ? this->Fan : this->sectorFan(0), alphaOf(angle)});
       this->Frame.Tangents.resize(spokes, 2);
       for (int k = 0; k < spokes; ++k)
       {
@@ -187,33 +189,6 @@ VertexFrames::VertexFrames(const QuadComplex& complex, const Creases& creases)
       for (int k = s.Fan.Closed ? 0 : 1; k < s.Fan.faces(); ++k)
       {
         this->Alphas[s.Fan.HalfEdges[k]] = s.Alpha;
-      }
-    }
-  }
-}
-
-void pruneCreases(const QuadComplex& complex, std::vector<char>& edge)
-{
-  for (bool changed = true; changed;)
-  {
-    changed = false;
-    for (Index v = 0; v < complex.vertices(); ++v)
-    {
-      const VertexFan& fan = complex.fan(v);
-      Index last = -1;
-      int count = 0;
-      for (const Index h : fan.HalfEdges)
-      {
-        if (edge[complex.edgeOf(h)])
-        {
-          last = complex.edgeOf(h);
-          ++count;
-        }
-      }
-      if (fan.Closed && count == 1)
-      {
-        edge[last] = 0;
-        changed = true;
       }
     }
   }

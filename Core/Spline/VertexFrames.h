@@ -20,7 +20,7 @@ struct Creases
 /// The faces around a vertex between two creases (or borders), with the alpha of its inner spokes.
 struct VertexSector
 {
-  VertexFan Fan; ///< closed only where no crease ends at the vertex
+  VertexFan Fan; ///< closed only where no crease meets the vertex
   double Alpha = 0.0;
 };
 
@@ -34,9 +34,9 @@ struct VertexFrame
 
 /**
  * Sectors and tangents of all vertices. A sector of m faces that spans the angle theta has
- * alpha = 2 cos(theta / m): theta is 2 pi around a vertex without creases, pi where a border or a
- * crease runs smoothly through it (two sectors of at least two faces each), and else, where creases
- * meet, the layout's angle rounded to a multiple of 30 degrees other than 180.
+ * alpha = 2 cos(theta / m): theta is 2 pi around a vertex without creases or at the end of one, pi
+ * where a border or a crease runs smoothly through it (two sectors of at least two faces each), and
+ * else, where creases meet, the layout's angle rounded to a multiple of 30 degrees other than 180.
  */
 class VertexFrames
 {
@@ -51,8 +51,4 @@ private:
   std::vector<VertexFrame> Frames;
   std::vector<double> Alphas;
 };
-
-/// Unmarks crease edges that end inside the surface, until every crease goes on, closes or reaches
-/// a border.
-void pruneCreases(const QuadComplex& complex, std::vector<char>& edge);
 } // namespace bsr

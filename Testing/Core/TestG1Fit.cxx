@@ -478,3 +478,23 @@ TEST(G1Fit, CancelsWithoutResult)
   ASSERT_FALSE(r);
   EXPECT_EQ(r.status().code(), StatusCode::Cancelled);
 }
+
+/// A cube stays a cube where its edges are creases, with flat faces and corners in place.
+TEST(G1Fit, CreasesKeepSharpEdges)
+{
+  QuadMesh m = meshes::cells(
+    {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}});
+  const auto p = sample(m, 12, [](const Vec3& x) { return x; });
+  G1FitOptions o;
+  o.DataWeight = 1e5;
+  o.CreaseAngle = 40.0;
+  const auto r = fitted(p, m, o);
+  EXPECT_EQ(r.CreaseEdges, 24); // two a side of the cube
+  EXPECT_LE(r.MaxNormalJump, 1e-6);
+  EXPECT_EQ(r.FoldedPatches, 0);
+  EXPECT_LE(r.Max, 1e-3);
+  o.CreaseAngle = 180.0;
+  const auto round = fitted(p, m, o);
+  EXPECT_EQ(round.CreaseEdges, 0);
+  EXPECT_GE(round.Max, 10.0 * r.Max);
+}
