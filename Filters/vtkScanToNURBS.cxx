@@ -249,6 +249,7 @@ int vtkScanToNURBS::RequestData(
   fit->SetInputConnection(1, remesh->GetOutputPort());
   fit->SetSegmentsPerSide(this->SegmentsPerSide);
   fit->SetRobustWeights(this->RobustWeights);
+  fit->SetCreaseAngle(std::min(this->FeatureAngle, 180.0));
   fit->SetCorrelatedNoise(false);
   fit->SetRational(this->Optimizer > 0 || this->Tolerance > 0.0);
   fit->SetOptimizer(this->Optimizer);

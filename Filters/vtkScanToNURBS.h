@@ -95,7 +95,8 @@ public:
   ///@}
 
   ///@{
-  /// Edges where the normals turn by more than this become sides of quads; 180 (default): none.
+  /// Edges where the normals turn by more than this become sides of quads and stay
+  /// sharp in the model; 180 (default): none.
   vtkSetMacro(FeatureAngle, double);
   vtkGetMacro(FeatureAngle, double);
   ///@}
