@@ -266,8 +266,12 @@ int vtkBSplineG1Fit::RequestData(
   bsr::SampleOptions sampling;
   sampling.Resolution = this->Resolution;
   bsr::AlgorithmMonitor rest(this, 0.9, 1.0);
-  const bsr::Status status =
+  bsr::Status status =
     result ? bsr::splineSurfaceTo(result->Model, sampling, rest, model) : result.status();
+  if (status && rest.cancelled())
+  {
+    status = bsr::Status::cancelled(); // said at the last step
+  }
   if (!status)
   {
     model->Initialize();

@@ -117,7 +117,7 @@ public:
 
   ///@{
   /// Samples a side of a polynomial piece in the model's polygons. Default 4.
-  vtkSetMacro(Resolution, int);
+  vtkSetClampMacro(Resolution, int, 1, 64);
   vtkGetMacro(Resolution, int);
   ///@}
 

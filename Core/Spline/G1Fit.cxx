@@ -226,7 +226,10 @@ private:
     {
       return own.status();
     }
-    this->finish(complex, net, shells, *own);
+    if (Status s = this->finish(complex, net, shells, *own); !s)
+    {
+      return s;
+    }
     return std::move(this->Out);
   }
 
@@ -360,13 +363,17 @@ private:
     return o;
   }
 
-  void finish(const QuadComplex& complex, const PatchNet& net,
+  Status finish(const QuadComplex& complex, const PatchNet& net,
     const std::vector<ShellFitResult>& shells, const std::vector<RationalShell>& own)
   {
     double squares = 0.0;
     double count = 0.0;
     for (std::size_t s = 0; s < shells.size(); ++s)
     {
+      if (this->Watch.cancelled())
+      {
+        return Status::cancelled();
+      }
       this->Out.Shells.push_back(summarize(net, shells[s], own[s], s == 1, this->Out.Patches));
       const ShellSummary& t = this->Out.Shells.back();
       squares += t.Rms * t.Rms * static_cast<double>(t.Points);
@@ -391,6 +398,7 @@ private:
     PatchReport wall;
     wall.Side = Shell::Wall;
     this->Out.Patches.resize(this->Out.Model.Patches.size(), wall);
+    return this->Watch.cancelled() ? Status::cancelled() : Status::ok();
   }
 
   const PartitionedPoints& Input;

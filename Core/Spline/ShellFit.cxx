@@ -155,6 +155,10 @@ private:
       return Status::cancelled();
     }
     this->assemble();
+    if (this->Watch.cancelled())
+    {
+      return Status::cancelled();
+    }
     auto net = this->Solver.solve(this->Equations.blocks(this->Net, lambda, this->K));
     if (!net)
     {
@@ -195,6 +199,10 @@ private:
       return s;
     }
     this->correct();
+    if (this->Watch.cancelled())
+    {
+      return Status::cancelled();
+    }
     this->weigh(c);
     return Status::ok();
   }

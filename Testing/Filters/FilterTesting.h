@@ -113,6 +113,51 @@ private:
   std::vector<Watch> Watched;
 };
 
+/**
+ * Sets an algorithm's abort flag as soon as its progress reaches a share, as ParaView's button
+ * does.
+ *
+ * @code
+ * const AbortAt abort(closing, 0.5);
+ * closing->Update();
+ * EXPECT_TRUE(abort.done()); // the progress came that far
+ * @endcode
+ */
+class AbortAt
+{
+public:
+  AbortAt(vtkAlgorithm* algorithm, double share) : Algorithm(algorithm)
+  {
+    this->Stopper->Share = share;
+    this->Tag = algorithm->AddObserver(vtkCommand::ProgressEvent, this->Stopper);
+  }
+  ~AbortAt() { this->Algorithm->RemoveObserver(this->Tag); }
+  AbortAt(const AbortAt&) = delete;
+  AbortAt& operator=(const AbortAt&) = delete;
+
+  bool done() const { return this->Stopper->Done; }
+
+private:
+  class Command : public vtkCommand
+  {
+  public:
+    static Command* New() { return new Command; }
+    void Execute(vtkObject* caller, unsigned long, void* data) override
+    {
+      if (data && *static_cast<double*>(data) >= this->Share)
+      {
+        static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1);
+        this->Done = true;
+      }
+    }
+    double Share = 0.0;
+    bool Done = false;
+  };
+  vtkSmartPointer<vtkAlgorithm> Algorithm;
+  vtkNew<Command> Stopper;
+  unsigned long Tag = 0;
+};
+
 /// Path of a file of ../shared/data (tests run from the source root), empty where it is absent.
 inline std::string sharedData(const std::string& name)
 {

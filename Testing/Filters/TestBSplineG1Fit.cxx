@@ -1,3 +1,4 @@
+#include "CubeLayout.h"
 #include "FilterTesting.h"
 
 #include "vtkBSplineG1Fit.h"
@@ -10,77 +11,18 @@
 #include <vtkPolyData.h>
 #include <vtkTable.h>
 
-namespace
-{
-const int Faces[6][4] = {
-  {0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
-const double Corners[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1},
-  {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}};
+#include <array>
+#include <vector>
 
-/// The cube as a layout; the last face may be made a triangle.
-vtkSmartPointer<vtkPolyData> layout(bool triangle = false)
-{
-  auto quads = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> points;
-  for (const auto& c : Corners)
-  {
-    points->InsertNextPoint(c);
-  }
-  vtkNew<vtkCellArray> cells;
-  for (int f = 0; f < 6; ++f)
-  {
-    const vtkIdType ids[4] = {Faces[f][0], Faces[f][1], Faces[f][2], Faces[f][3]};
-    cells->InsertNextCell(triangle && f == 5 ? 3 : 4, ids);
-  }
-  quads->SetPoints(points);
-  quads->SetPolys(cells);
-  return quads;
-}
-
-/// n x n points a face of the cube, blown up to the unit sphere, partitioned.
-vtkSmartPointer<vtkPolyData> points(int n)
-{
-  auto data = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> places;
-  vtkNew<vtkIntArray> quad;
-  quad->SetName("QuadId");
-  vtkNew<vtkDoubleArray> uv;
-  uv->SetName("UV");
-  uv->SetNumberOfComponents(2);
-  for (int i = 0; i < 6 * n * n; ++i)
-  {
-    const int f = i / (n * n);
-    const double u = (i % n + 0.5) / n;
-    const double v = (i / n % n + 0.5) / n;
-    double x[3];
-    double size = 0.0;
-    for (int d = 0; d < 3; ++d)
-    {
-      x[d] = (1 - v) * ((1 - u) * Corners[Faces[f][0]][d] + u * Corners[Faces[f][1]][d]) +
-             v * ((1 - u) * Corners[Faces[f][3]][d] + u * Corners[Faces[f][2]][d]);
-      size += x[d] * x[d];
-    }
-    for (double& c : x)
-    {
-      c /= std::sqrt(size);
-    }
-    places->InsertNextPoint(x);
-    quad->InsertNextValue(f);
-    uv->InsertNextTuple2(u, v);
-  }
-  data->SetPoints(places);
-  data->GetPointData()->AddArray(quad);
-  data->GetPointData()->AddArray(uv);
-  return data;
-}
-} // namespace
+using bsrtest::cubeLayout;
+using bsrtest::spherePoints;
 
 TEST(BSplineG1Fit, ThreePortsAndTheirArrays)
 {
   vtkNew<vtkBSplineG1Fit> fit;
   bsrtest::ErrorLog log(fit);
-  fit->SetInputData(0, points(12));
-  fit->SetInputData(1, layout());
+  fit->SetInputData(0, spherePoints(12));
+  fit->SetInputData(1, cubeLayout());
   fit->Update();
   EXPECT_TRUE(log.empty()) << log.text();
   vtkPolyData* model = vtkPolyData::SafeDownCast(fit->GetOutputDataObject(0));
@@ -108,8 +50,8 @@ TEST(BSplineG1Fit, RationalPatchesAndTheirReport)
 {
   vtkNew<vtkBSplineG1Fit> fit;
   bsrtest::ErrorLog log(fit);
-  fit->SetInputData(0, points(10));
-  fit->SetInputData(1, layout());
+  fit->SetInputData(0, spherePoints(10));
+  fit->SetInputData(1, cubeLayout());
   fit->SetDataWeight(1e5);
   fit->RationalOn();
   for (const int optimizer : {vtkBSplineG1Fit::NO_WEIGHTS, vtkBSplineG1Fit::EVOLUTION_STRATEGY,
@@ -157,13 +99,102 @@ TEST(BSplineG1Fit, BadInputIsOneErrorAndNoOutput)
     EXPECT_EQ(vtkPolyData::SafeDownCast(fit->GetOutputDataObject(0))->GetNumberOfCells(), 0);
     return log.Errors.empty() ? std::string() : log.Errors.front();
   };
-  auto p = points(8);
+  auto p = spherePoints(8);
   p->GetPointData()->RemoveArray("QuadId");
-  EXPECT_NE(failure(p, layout()).find("QuadId"), std::string::npos);
-  EXPECT_NE(failure(points(8), layout(true)).find("3 corners"), std::string::npos);
-  EXPECT_NE(failure(points(8), layout(), "Area").find("Area"), std::string::npos);
-  EXPECT_NE(failure(points(1), layout()).find("points for 6 quads"), std::string::npos);
-  auto far = points(8);
+  EXPECT_NE(failure(p, cubeLayout()).find("QuadId"), std::string::npos);
+  EXPECT_NE(failure(spherePoints(8), cubeLayout(true)).find("3 corners"), std::string::npos);
+  EXPECT_NE(failure(spherePoints(8), cubeLayout(), "Area").find("Area"), std::string::npos);
+  EXPECT_NE(failure(spherePoints(1), cubeLayout()).find("points for 6 quads"), std::string::npos);
+  auto far = spherePoints(8);
   far->GetPointData()->GetArray("QuadId")->SetComponent(0, 0, 99);
-  EXPECT_NE(failure(far, layout()).find("QuadId 99"), std::string::npos);
+  EXPECT_NE(failure(far, cubeLayout()).find("QuadId 99"), std::string::npos);
+}
+
+TEST(BSplineG1Fit, RefusesQuadsThatAreNoManifold)
+{
+  const auto refused = [](const std::vector<std::array<vtkIdType, 4>>& more)
+  {
+    auto quads = cubeLayout();
+    for (const auto& q : more)
+    {
+      for (const vtkIdType id : q)
+      {
+        while (id >= quads->GetNumberOfPoints())
+        {
+          quads->GetPoints()->InsertNextPoint(
+            3.0 + id % 2, 3.0 + id / 2 % 2, quads->GetNumberOfPoints());
+        }
+      }
+      quads->GetPolys()->InsertNextCell(4, q.data());
+    }
+    vtkNew<vtkBSplineG1Fit> fit;
+    bsrtest::ErrorLog log(fit);
+    fit->SetInputData(0, spherePoints(8));
+    fit->SetInputData(1, quads);
+    fit->Update();
+    EXPECT_TRUE(log.saidOnce("manifold")) << log.text();
+    for (int port = 0; port < 2; ++port)
+    {
+      EXPECT_EQ(fit->GetOutput(port)->GetNumberOfCells(), 0);
+    }
+  };
+  refused({{0, 1, 9, 8}});                   // a third quad at the side 0 1
+  refused({{6, 8, 9, 10}});                  // a second fan at the corner 6
+  refused({{0, 1, 2, 3}});                   // one quad twice, turned over
+  refused({{6, 8, 9, 10}, {6, 10, 11, 12}}); // a larger second fan
+}
+
+TEST(BSplineG1Fit, FewPointsInAPatchFoldNothing)
+{
+  auto few = spherePoints(12);
+  vtkDataArray* quad = few->GetPointData()->GetArray("QuadId");
+  vtkNew<vtkPolyData> left;
+  vtkNew<vtkPoints> places;
+  vtkNew<vtkIntArray> ids;
+  ids->SetName("QuadId");
+  vtkNew<vtkDoubleArray> uv;
+  uv->SetName("UV");
+  uv->SetNumberOfComponents(2);
+  for (vtkIdType i = 0; i < few->GetNumberOfPoints(); ++i)
+  {
+    // Face 0 keeps two points and face 1 none.
+    const auto f = static_cast<int>(quad->GetComponent(i, 0));
+    if (f > 1 || i == 30 || i == 40)
+    {
+      places->InsertNextPoint(few->GetPoint(i));
+      ids->InsertNextValue(f);
+      uv->InsertNextTuple(few->GetPointData()->GetArray("UV")->GetTuple(i));
+    }
+  }
+  left->SetPoints(places);
+  left->GetPointData()->AddArray(ids);
+  left->GetPointData()->AddArray(uv);
+  vtkNew<vtkBSplineG1Fit> fit;
+  bsrtest::ErrorLog log(fit);
+  fit->SetInputData(0, left);
+  fit->SetInputData(1, cubeLayout());
+  fit->Update();
+  EXPECT_TRUE(log.empty()) << log.text();
+  vtkFieldData* field = fit->GetOutput(0)->GetFieldData();
+  EXPECT_EQ(field->GetArray("FoldedPatches")->GetComponent(0, 0), 0.0);
+  EXPECT_LE(field->GetArray("MaxNormalJump")->GetComponent(0, 0), 1e-6);
+}
+
+TEST(BSplineG1Fit, CancelLeavesNothing)
+{
+  for (const double at : {0.0, 0.5, 0.9})
+  {
+    vtkNew<vtkBSplineG1Fit> fit;
+    fit->SetInputData(0, spherePoints(12));
+    fit->SetInputData(1, cubeLayout());
+    const bsrtest::AbortAt abort(fit, at);
+    bsrtest::ErrorLog log(fit);
+    fit->Update();
+    EXPECT_TRUE(abort.done()) << at;
+    EXPECT_TRUE(log.empty()) << log.text();
+    EXPECT_EQ(fit->GetOutput(0)->GetNumberOfPoints(), 0) << at;
+    EXPECT_EQ(fit->GetOutput(0)->GetFieldData()->GetNumberOfArrays(), 0) << at;
+    EXPECT_EQ(fit->GetOutput(1)->GetNumberOfPoints(), 0) << at;
+    EXPECT_EQ(vtkTable::SafeDownCast(fit->GetOutputDataObject(2))->GetNumberOfRows(), 0) << at;
+  }
 }

@@ -1,7 +1,9 @@
 #include "Adapters/BSRSplineAdapter.h"
+#include "CubeLayout.h"
 #include "FilterTesting.h"
 #include "SampleModels.h"
 #include "Spline/Volume.h"
+#include "vtkBSplineG1Fit.h"
 #include "vtkIGESWriter.h"
 #include "vtkSTEPWriter.h"
 
@@ -9,6 +11,8 @@
 #include <BRepGProp.hxx>
 #include <BRep_Tool.hxx>
 #include <GProp_GProps.hxx>
+#include <GeomConvert.hxx>
+#include <Geom_BSplineSurface.hxx>
 #include <IGESControl_Reader.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
@@ -20,8 +24,11 @@
 #include <TopoDS_Shell.hxx>
 
 #include <vtkErrorCode.h>
+#include <vtkFieldData.h>
 #include <vtkPolyData.h>
+#include <vtkTable.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -132,6 +139,53 @@ void expectSolid(const SplineModel& m, const TopoDS_Shape& shape, int shells)
   const double volume = measureModel(m).Volume;
   EXPECT_GT(volume, 0.0);
   EXPECT_NEAR(volumeOf(shape), volume, 1e-6 * volume);
+}
+
+/// The weights of a patch relative to its largest, of all patches, sorted.
+void addWeights(std::vector<double> patch, std::vector<double>& all)
+{
+  const double largest = *std::max_element(patch.begin(), patch.end());
+  for (const double w : patch)
+  {
+    all.push_back(w / largest);
+  }
+}
+
+std::vector<double> weightsOf(const SplineModel& m)
+{
+  std::vector<double> all;
+  for (const SplinePatch& p : m.Patches)
+  {
+    std::vector<double> own;
+    for (int i = 0; i < p.CountU * p.CountV; ++i)
+    {
+      own.push_back(m.ControlPoints[p.FirstControlPoint + i][3]);
+    }
+    addWeights(own, all);
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+std::vector<double> weightsOf(const TopoDS_Shape& shape)
+{
+  std::vector<double> all;
+  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next())
+  {
+    const Handle(Geom_BSplineSurface) s =
+      GeomConvert::SurfaceToBSplineSurface(BRep_Tool::Surface(TopoDS::Face(it.Current())));
+    std::vector<double> own;
+    for (int i = 1; i <= s->NbUPoles(); ++i)
+    {
+      for (int j = 1; j <= s->NbVPoles(); ++j)
+      {
+        own.push_back(s->Weight(i, j));
+      }
+    }
+    addWeights(own, all);
+  }
+  std::sort(all.begin(), all.end());
+  return all;
 }
 } // namespace
 
@@ -305,6 +359,42 @@ TEST(STEPWriter, FailuresGiveOneErrorAndKeepTheFile)
   fails(surfaceOf(samples::ball()), folder.file("no/such/folder.step"), "Cannot write");
   EXPECT_EQ(contents(file), "precious");
   EXPECT_EQ(folder.count(), 1U);
+}
+
+TEST(STEPWriter, RationalFitsKeepTheirWeights)
+{
+  vtkNew<vtkBSplineG1Fit> fit;
+  fit->SetInputData(0, bsrtest::spherePoints(10));
+  fit->SetInputData(1, bsrtest::cubeLayout());
+  fit->SetDataWeight(1e5);
+  fit->RationalOn();
+  fit->SetOptimizer(vtkBSplineG1Fit::DETERMINISTIC);
+  fit->Update();
+  const auto model = splineModelFrom(vtkPolyData::SafeDownCast(fit->GetOutputDataObject(0)));
+  ASSERT_TRUE(model) << model.status().message();
+  const std::vector<double> weights = weightsOf(*model);
+  ASSERT_LT(weights.front(), 0.999 * weights.back());
+  const Folder folder;
+  vtkNew<vtkSTEPWriter> step;
+  step->SetInputConnection(fit->GetOutputPort());
+  step->SetFileName(folder.file("m.step").c_str());
+  step->Write();
+  EXPECT_NE(contents(folder.file("m.step")).find("RATIONAL_B_SPLINE_SURFACE"), std::string::npos);
+  vtkNew<vtkIGESWriter> iges;
+  iges->SetInputConnection(fit->GetOutputPort());
+  iges->SetFileName(folder.file("m.igs").c_str());
+  iges->Write();
+  for (const TopoDS_Shape& shape : {readBack<STEPControl_Reader>(folder.file("m.step")),
+         readBack<IGESControl_Reader>(folder.file("m.igs"))})
+  {
+    expectSolid(*model, shape, 1);
+    const std::vector<double> read = weightsOf(shape);
+    ASSERT_EQ(read.size(), weights.size());
+    for (std::size_t i = 0; i < read.size(); ++i)
+    {
+      EXPECT_NEAR(read[i], weights[i], 1e-9);
+    }
+  }
 }
 
 TEST(STEPWriter, GmshMeshesTheSolid)

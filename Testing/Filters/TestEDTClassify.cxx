@@ -165,6 +165,38 @@ TEST(EDTClassify, AnEmptySurfaceIsAnError)
   EXPECT_EQ(chain.Classify->GetOutput()->GetNumberOfPoints(), 0);
 }
 
+TEST(EDTClassify, CancelLeavesNothing)
+{
+  for (const double at : {0.0, 0.4, 0.8})
+  {
+    Chain chain(tubeImage());
+    chain.Closing->Update();
+    const AbortAt abort(chain.Classify, at);
+    ErrorLog log(chain.Classify);
+    chain.Classify->Update();
+    EXPECT_TRUE(abort.done());
+    EXPECT_TRUE(log.empty()) << log.text();
+    EXPECT_EQ(chain.Classify->GetOutput()->GetNumberOfPoints(), 0);
+    EXPECT_EQ(chain.Classify->GetOutput()->GetFieldData()->GetNumberOfArrays(), 0);
+  }
+}
+
+TEST(FiberEndsFilter, CancelLeavesNothing)
+{
+  Chain chain(tubeImage());
+  chain.Classify->Update();
+  const AbortAt abort(chain.Ends, 0.0);
+  ErrorLog log(chain.Ends);
+  chain.Ends->Update();
+  EXPECT_TRUE(abort.done());
+  EXPECT_TRUE(log.empty()) << log.text();
+  for (int port = 0; port < 2; ++port)
+  {
+    EXPECT_EQ(chain.Ends->GetOutput(port)->GetNumberOfPoints(), 0);
+    EXPECT_EQ(chain.Ends->GetOutput(port)->GetFieldData()->GetNumberOfArrays(), 0);
+  }
+}
+
 TEST(FiberEndsFilter, MarksTheTwoEndsButNotTheHole)
 {
   Chain chain(tubeImage());

@@ -207,3 +207,23 @@ TEST(PartitionToQuadsFilter, GeodesicTakesPointsOverASurface)
   EXPECT_NE(warned.Warnings[0].find("Surface"), std::string::npos);
   EXPECT_EQ(bare->GetOutput()->GetPointData()->GetArray("QuadId")->GetTuple1(0), 1.0);
 }
+
+TEST(PartitionToQuadsFilter, CancelLeavesNothing)
+{
+  const auto [sphere, cube] = sphereAndCube();
+  for (const int method : {vtkPartitionToQuads::NEAREST_QUAD, vtkPartitionToQuads::GEODESIC})
+  {
+    vtkNew<vtkPartitionToQuads> filter;
+    filter->SetMethod(method);
+    filter->SetInputData(0, sphere);
+    filter->SetInputData(1, cube);
+    const bsrtest::AbortAt abort(filter, 0.0);
+    ErrorLog log(filter);
+    filter->Update();
+    EXPECT_TRUE(abort.done());
+    EXPECT_TRUE(log.empty()) << log.text();
+    EXPECT_EQ(filter->GetOutput()->GetNumberOfPoints(), 0);
+    EXPECT_EQ(filter->GetOutput()->GetPointData()->GetNumberOfArrays(), 0);
+    EXPECT_EQ(vtkPolyData::SafeDownCast(filter->GetOutputDataObject(1))->GetNumberOfPoints(), 0);
+  }
+}

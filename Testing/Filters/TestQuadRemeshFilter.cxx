@@ -235,6 +235,33 @@ TEST(QuadRemeshFilter, RegionsOfPointsAndSizesByArray)
   EXPECT_LT(above, out->GetNumberOfCells());
 }
 
+TEST(QuadRemeshFilter, CancelLeavesNothing)
+{
+  const auto surface = bsrtest::randomShape(2, 32);
+  for (const int method : {vtkQuadRemesh::FIELD_ALIGNED, vtkQuadRemesh::MORSE_SMALE})
+  {
+    for (const double at : {0.0, 0.5})
+    {
+      vtkNew<vtkQuadRemesh> remesh;
+      remesh->SetInputData(surface);
+      remesh->SetMethod(method);
+      remesh->SetNumberOfQuads(120);
+      const bsrtest::AbortAt abort(remesh, at);
+      ErrorLog log(remesh);
+      remesh->Update();
+      EXPECT_TRUE(abort.done());
+      EXPECT_TRUE(log.empty()) << log.text();
+      for (int port = 0; port < remesh->GetNumberOfOutputPorts(); ++port)
+      {
+        vtkDataObject* out = remesh->GetOutputDataObject(port);
+        EXPECT_EQ(out->GetNumberOfElements(vtkDataObject::POINT), 0) << port;
+        EXPECT_EQ(out->GetNumberOfElements(vtkDataObject::ROW), 0) << port;
+        EXPECT_EQ(out->GetFieldData()->GetNumberOfArrays(), 0) << port;
+      }
+    }
+  }
+}
+
 TEST(QuadRemeshFilter, ScansOfSharedData)
 {
   const std::map<std::string, double> shapes = {{"tubeS", 2}, {"rocker-arm", 0}};
