@@ -15,7 +15,6 @@
 #include <vtkPointData.h>
 #include <vtkPointSet.h>
 #include <vtkPolyData.h>
-#include <vtkStringArray.h>
 #include <vtkTable.h>
 #include <vtkUnsignedCharArray.h>
 
@@ -191,10 +190,7 @@ void totalsTo(const bsr::G1FitResult& r, double seconds, bool rational, vtkField
     bsr::addField(field, "WeightSeconds", weightSeconds);
     bsr::addField(field, "PatchesAboveTolerance", r.PatchesAboveTolerance);
   }
-  vtkNew<vtkStringArray> message;
-  message->SetName("Message");
-  message->InsertNextValue(r.Message);
-  field->AddArray(message);
+  bsr::addText(field, "Message", r.Message);
 }
 } // namespace
 

@@ -16,7 +16,6 @@
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
-#include <vtkStringArray.h>
 #include <vtkUnsignedCharArray.h>
 
 vtkStandardNewMacro(vtkClosing);
@@ -50,10 +49,7 @@ void attachNumbers(const bsr::ClosingResult& r, vtkFieldData* field)
   bsr::addField(field, "BettiNumbersSurface", numbers(r.Surface));
   bsr::addField(field, "Components", static_cast<double>(r.Components));
   bsr::addField(field, "VolumeRatio", r.VolumeRatio);
-  vtkNew<vtkStringArray> note;
-  note->SetName("ClosingNote");
-  note->InsertNextValue(r.Warning);
-  field->AddArray(note);
+  bsr::addText(field, "ClosingNote", r.Warning);
   if (!r.Curve.Radius.empty())
   {
     vtkNew<vtkDoubleArray> curve;
@@ -84,12 +80,7 @@ int vtkClosing::RequestInformation(
 int vtkClosing::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
-  vtkInformation* in = inputs[0]->GetInformationObject(0);
-  if (in->Has(Pipeline::WHOLE_EXTENT()))
-  {
-    in->Set(Pipeline::UPDATE_EXTENT(), in->Get(Pipeline::WHOLE_EXTENT()), 6);
-  }
+  bsr::requestWholeExtent(inputs[0]->GetInformationObject(0));
   return 1;
 }
 

@@ -121,10 +121,7 @@ void totalsTo(const bsr::ContourSkinResult& result, double seconds, vtkFieldData
   bsr::addField(field, "MaxNormalJump", jump);
   bsr::addField(field, "FoldedPatches", folded);
   bsr::addField(field, "Seconds", seconds);
-  vtkNew<vtkStringArray> message;
-  message->SetName("Message");
-  message->InsertNextValue(messageOf(result));
-  field->AddArray(message);
+  bsr::addText(field, "Message", messageOf(result));
 }
 
 void messagesTo(const bsr::ContourSkinResult& result, vtkPolyData* contours)

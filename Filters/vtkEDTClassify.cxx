@@ -1,6 +1,7 @@
 #include "vtkEDTClassify.h"
 
 #include "Adapters/BSRClosedImageAdapter.h"
+#include "Adapters/BSRImageAdapter.h"
 #include "Adapters/BSRMeshAdapter.h"
 #include "Adapters/BSRMonitor.h"
 #include "Image/FiberSides.h"
@@ -15,7 +16,6 @@
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
-#include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
@@ -100,12 +100,7 @@ int vtkEDTClassify::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->Superclass::RequestUpdateExtent(request, inputs, outputs);
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
-  vtkInformation* in = inputs[1]->GetInformationObject(0);
-  if (in && in->Has(Pipeline::WHOLE_EXTENT()))
-  {
-    in->Set(Pipeline::UPDATE_EXTENT(), in->Get(Pipeline::WHOLE_EXTENT()), 6);
-  }
+  bsr::requestWholeExtent(inputs[1]->GetInformationObject(0));
   return 1;
 }
 

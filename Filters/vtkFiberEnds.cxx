@@ -14,7 +14,6 @@
 #include <vtkObjectFactory.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
-#include <vtkStringArray.h>
 
 vtkStandardNewMacro(vtkFiberEnds);
 
@@ -61,10 +60,7 @@ void attach(const bsr::FiberEnds& ends, vtkPolyData* output)
   std::copy(ends.Surface.Region.begin(), ends.Surface.Region.end(), region->GetPointer(0));
   output->GetCellData()->SetScalars(region);
   bsr::addField(output->GetFieldData(), "OpenEnds", static_cast<double>(ends.Rims.size()));
-  vtkNew<vtkStringArray> note;
-  note->SetName("EndsNote");
-  note->InsertNextValue(ends.Note);
-  output->GetFieldData()->AddArray(note);
+  bsr::addText(output->GetFieldData(), "EndsNote", ends.Note);
 }
 
 /// The rims as closed polylines with points of their own.

@@ -81,12 +81,7 @@ vtkTypeBool vtkFiberReconstruction::ProcessRequest(
   if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()))
   {
     // The object is found in the whole volume.
-    vtkInformation* in = input[0]->GetInformationObject(0);
-    if (in->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
-    {
-      in->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(),
-        in->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()), 6);
-    }
+    bsr::requestWholeExtent(input[0]->GetInformationObject(0));
     return 1;
   }
   if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))

@@ -9,6 +9,7 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
+#include <vtkStringArray.h>
 
 #include <algorithm>
 #include <limits>
@@ -172,6 +173,14 @@ void addField(vtkFieldData* field, const char* name, const std::vector<double>& 
   {
     a->InsertNextTuple(values.data());
   }
+  field->AddArray(a);
+}
+
+void addText(vtkFieldData* field, const char* name, const std::string& text)
+{
+  vtkNew<vtkStringArray> a;
+  a->SetName(name);
+  a->InsertNextValue(text);
   field->AddArray(a);
 }
 } // namespace bsr

@@ -31,6 +31,9 @@ void triangleMeshTo(const TriangleMesh& mesh, vtkPolyData* out);
 /// Adds a field array of one tuple under `name` (of none without values).
 void addField(vtkFieldData* field, const char* name, double value);
 void addField(vtkFieldData* field, const char* name, const std::vector<double>& values);
+
+/// Adds a field array of one string under `name`.
+void addText(vtkFieldData* field, const char* name, const std::string& text);
 } // namespace bsr
 
 #endif
