@@ -18,7 +18,8 @@ struct EndMouth
 
 struct FiberEnds
 {
-  /// The surface, its triangles split along the rims; Region 0 is the body, k the k-th end.
+  /// The surface, its triangles split along the rims and moved there; Region 0 is the body, k the
+  /// k-th end.
   TriangleMesh Surface;
   /// The closed loop of vertices around each end, counter-clockwise seen from outside.
   std::vector<std::vector<Index>> Rims;
@@ -32,9 +33,11 @@ struct FiberEnds
  *
  * Around the axis of the mouth the rim is sought in every direction as the surface's outermost
  * point under 45 degrees between axis and radius; the axis is then turned to the rim's plane and
- * the search repeated. A smooth function that is zero on the rim, positive on the end's side of
- * the 45 degree cone through it, is cut at zero: triangles are split, vertices close to the rim
- * taken as they are.
+ * the search repeated. A smooth closed curve is fitted along it, in which webs of the surface over
+ * debris count little. A function that is zero on that curve, positive on the end's side of the
+ * 45 degree cone through it, is cut at zero: triangles are split, vertices close to the curve taken
+ * as they are. The surface within half a mouth's radius is then moved to the curve, by at most a
+ * fifth of that radius: the rims are smooth, however rough the wall.
  *
  * A mouth is left out (Note says why) unless its region is one disc with one simple loop around
  * it, apart from the others.

@@ -73,6 +73,36 @@ std::vector<EndMouth> bothMouths()
 {
   return {{{-27.0, 0.5, 0.0}, {-1.0, 0.1, 0.0}, 7.5}, {{27.0, 0.0, 0.5}, {1.0, 0.0, 0.1}, 7.5}};
 }
+/// Root mean square and largest distance of a rim from the circle of radius 12 at |x| = 30.
+std::pair<double, double> offRim(const FiberEnds& ends, const std::vector<Index>& rim)
+{
+  double sum = 0.0;
+  double most = 0.0;
+  for (const Index v : rim)
+  {
+    const Vec3& p = ends.Surface.Points[v];
+    const double off = std::hypot(std::hypot(p.y(), p.z()) - 12.0, std::abs(p.x()) - 30.0);
+    sum += off * off;
+    most = std::max(most, off);
+  }
+  return {std::sqrt(sum / static_cast<double>(rim.size())), most};
+}
+
+/// The least cosine between the normals of a triangle before and after points have moved.
+double leastCosine(const TriangleMesh& before, const TriangleMesh& after)
+{
+  double least = 1.0;
+  for (const auto& t : before.Triangles)
+  {
+    const auto normal = [&t](const TriangleMesh& m)
+    {
+      return Vec3((m.Points[t[1]] - m.Points[t[0]]).cross(m.Points[t[2]] - m.Points[t[0]]))
+        .normalized();
+    };
+    least = std::min(least, normal(before).dot(normal(after)));
+  }
+  return least;
+}
 } // namespace
 
 TEST(FiberEnds, CutsBothEndsAlongTheOuterRim)
@@ -102,6 +132,63 @@ TEST(FiberEnds, CutsBothEndsAlongTheOuterRim)
     }
     EXPECT_EQ(regionEuler(ends->Surface, 0), 0); // the body is a tube
   }
+}
+
+TEST(FiberEnds, TheRimPassesAWebOverDebris)
+{
+  TriangleMesh mesh = capsule(4.0);
+  for (Vec3& p : mesh.Points)
+  {
+    // From the rim at x = 30 the surface rises to a ridge behind it.
+    const double r = std::hypot(p.y(), p.z());
+    const double across = std::max(0.0, 1.0 - std::abs(std::atan2(p.z(), p.y())) / 0.4);
+    const double along = std::max(0.0, 1.0 - std::abs(p.x() - 23.0) / 7.0);
+    if (r > 11.5)
+    {
+      const double scale = (r + 8.0 * along * std::sqrt(across)) / r;
+      p.y() *= scale;
+      p.z() *= scale;
+    }
+  }
+  Monitor monitor;
+  const auto ends = findFiberEnds(mesh, bothMouths(), monitor);
+  ASSERT_TRUE(ends);
+  ASSERT_EQ(ends->Rims.size(), 2u) << ends->Note;
+  EXPECT_LT(offRim(*ends, ends->Rims[1]).first, 1.0);
+  EXPECT_LT(offRim(*ends, ends->Rims[1]).second, 2.0);
+}
+
+TEST(FiberEnds, FindsTheRimOfAWallThickerThanItsLumenIsWide)
+{
+  auto mouths = bothMouths();
+  mouths[0].Radius = mouths[1].Radius = 3.8;
+  Monitor monitor;
+  const auto ends = findFiberEnds(capsule(4.0), mouths, monitor);
+  ASSERT_TRUE(ends);
+  ASSERT_EQ(ends->Rims.size(), 2u) << ends->Note;
+  for (const auto& rim : ends->Rims)
+  {
+    EXPECT_LT(offRim(*ends, rim).first, 1.2);
+  }
+}
+
+TEST(FiberEnds, MovingTheSurfaceToASmoothRimFoldsNothing)
+{
+  TriangleMesh mesh = capsule(4.0);
+  for (Vec3& p : mesh.Points) // a rough end
+  {
+    const double a = std::atan2(p.z(), p.y());
+    p.x() += p.x() > 20.0 ? 1.8 * std::sin(12.0 * a) * (p.x() - 20.0) / 10.0 : 0.0;
+  }
+  Monitor monitor;
+  const auto ends = findFiberEnds(mesh, bothMouths(), monitor);
+  ASSERT_TRUE(ends);
+  ASSERT_EQ(ends->Rims.size(), 2u) << ends->Note;
+  EXPECT_LT(offRim(*ends, ends->Rims[1]).first, 0.75);
+  TriangleMesh moved = mesh; // the cut appends points, the others keep their place in the list
+  moved.Points.assign(ends->Surface.Points.begin(),
+    ends->Surface.Points.begin() + static_cast<std::ptrdiff_t>(mesh.Points.size()));
+  EXPECT_GT(leastCosine(mesh, moved), 0.0);
 }
 
 TEST(FiberEnds, WorksOnASurfaceTurnedInsideOut)

@@ -1,0 +1,168 @@
+#include "Mesh/FiberRim.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace bsr
+{
+namespace
+{
+constexpr int Bins = MouthFrame::Bins;
+constexpr double MostTilt = 0.7;    ///< cosine between mouth and rim plane at least
+constexpr double PlainWaves = 3.0;  ///< around, of the height that a search is drawn to
+constexpr double HeightWaves = 6.0; ///< around, that a rim's height follows
+constexpr double RadiusWaves = 8.0; ///< around, that a rim's radius follows
+constexpr double Spread = 0.02;     ///< of the mouth's radius: of detours that count in full
+constexpr int Rounds = 12;          ///< of weighing
+
+using Values = Eigen::Matrix<double, Bins, 1>;
+
+/// Least squares with weights and a penalty on the second derivative that halves waves of the given
+/// number around.
+class SmoothRing
+{
+public:
+  explicit SmoothRing(double waves)
+  {
+    const double stiffness = std::pow(2.0 * MouthFrame::Pi * waves / Bins, -4.0);
+    this->Penalty.setZero(Bins, Bins);
+    for (int i = 0; i < Bins; ++i)
+    {
+      const int before = (i + Bins - 1) % Bins;
+      const int after = (i + 1) % Bins;
+      Values d = Values::Zero();
+      d[before] = 1.0;
+      d[i] = -2.0;
+      d[after] = 1.0;
+      this->Penalty += stiffness * d * d.transpose();
+    }
+  }
+  Values through(const Values& value, const Values& weight) const
+  {
+    Eigen::MatrixXd normal = this->Penalty;
+    normal.diagonal() += weight;
+    return normal.ldlt().solve(weight.cwiseProduct(value));
+  }
+
+private:
+  Eigen::MatrixXd Penalty;
+};
+
+/// A smooth curve along most of a rim. What lies behind it and farther out at once has little
+/// weight: the closed surface spans webs from the rim to debris on the wall, and the rim follows
+/// their edge. A notch, where the wall itself ends early, is only behind.
+FiberRim robustRim(const FiberRim& rim, double radius, double heightWaves, double radiusWaves)
+{
+  const SmoothRing smoothHeight(heightWaves);
+  const SmoothRing smoothRadius(radiusWaves);
+  const Eigen::Map<const Values> h(rim.Height.data());
+  const Eigen::Map<const Values> r(rim.Radius.data());
+  Values weight = Values::Ones();
+  Values height;
+  Values wide;
+  for (int round = 0; round < Rounds; ++round)
+  {
+    height = smoothHeight.through(h, weight);
+    wide = smoothRadius.through(r, weight);
+    for (int i = 0; i < Bins; ++i)
+    {
+      const double back = std::max(height[i] - h[i], 0.0);
+      const double outward = std::max(r[i] - wide[i], 0.0);
+      const double off = std::sqrt(back * outward) / (Spread * radius);
+      weight[i] = round < Rounds / 2 ? 1.0 / (1.0 + off) : 1.0 / (1.0 + off * off);
+    }
+  }
+  FiberRim result;
+  Values::Map(result.Height.data()) = height;
+  Values::Map(result.Radius.data()) = wide;
+  return result;
+}
+
+/// The frame of the plane through a rim.
+MouthFrame planeOf(const FiberRim& rim, const MouthFrame& frame)
+{
+  Vec3 center = Vec3::Zero();
+  for (int i = 0; i < Bins; ++i)
+  {
+    center += rim.point(frame, i) / Bins;
+  }
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < Bins; ++i)
+  {
+    const Vec3 d = rim.point(frame, i) - center;
+    covariance += d * d.transpose();
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+  Vec3 axis = solver.eigenvectors().col(0);
+  if (axis.dot(frame.Axis) < 0.0)
+  {
+    axis = -axis;
+  }
+  return {center, axis};
+}
+} // namespace
+
+MouthFrame::MouthFrame(const Vec3& center, const Vec3& axis)
+    : Center(center), Axis(axis.normalized())
+{
+  this->U = this->Axis.unitOrthogonal();
+  this->V = this->Axis.cross(this->U);
+}
+
+double MouthFrame::bin(const Vec3& p) const
+{
+  const Vec3 d = p - this->Center;
+  const double a = std::atan2(d.dot(this->V), d.dot(this->U)) / (2.0 * Pi) * Bins;
+  return a < 0.0 ? a + Bins : a;
+}
+
+Vec3 MouthFrame::radial(double bin) const
+{
+  const double a = bin / Bins * 2.0 * Pi;
+  return std::cos(a) * this->U + std::sin(a) * this->V;
+}
+
+Vec2 FiberRim::at(double bin) const
+{
+  const double x = bin - 0.5;
+  const int i = static_cast<int>(std::floor(x));
+  const double t = x - i;
+  return {(1.0 - t) * ring(this->Radius, i) + t * ring(this->Radius, i + 1),
+    (1.0 - t) * ring(this->Height, i) + t * ring(this->Height, i + 1)};
+}
+
+std::optional<FiberRim> findRim(
+  const TriangleMesh& mesh, const EndMouth& mouth, double lean, MouthFrame& frame)
+{
+  const auto normals = wideNormals(mesh);
+  std::optional<FiberRim> rim;
+  for (int round = 0; round < 4; ++round)
+  {
+    rim = searchRim(mesh, normals, frame, mouth.Radius, lean, nullptr);
+    if (!rim)
+    {
+      return rim;
+    }
+    if (round < 3)
+    {
+      const MouthFrame plane = planeOf(*rim, frame);
+      if (plane.Axis.dot(mouth.Direction.normalized()) < MostTilt)
+      {
+        break;
+      }
+      frame = plane;
+    }
+  }
+  for (int round = 0; round < 2; ++round)
+  {
+    const FiberRim smooth = robustRim(*rim, mouth.Radius, PlainWaves, RadiusWaves);
+    const auto smoother = searchRim(mesh, normals, frame, mouth.Radius, lean, &smooth.Height);
+    rim = smoother ? smoother : rim;
+  }
+  return robustRim(*rim, mouth.Radius, HeightWaves, RadiusWaves);
+}
+} // namespace bsr
