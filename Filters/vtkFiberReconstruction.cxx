@@ -168,6 +168,8 @@ int vtkFiberReconstruction::RequestData(
   ends->SetInputData(1, classified);
   vtkNew<vtkQuadRemesh> remesh;
   remesh->SetNumberOfQuads(this->NumberOfQuads);
+  remesh
+    ->FitRelaxationOff(); // a fit through both walls is not helped by one that follows the outer
   if (this->OpenEnds == 0)
   {
     if (!stages.run("FiberEnds", ends, 5.0))

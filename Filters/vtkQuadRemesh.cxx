@@ -171,6 +171,7 @@ int vtkQuadRemesh::RequestData(
   options.NumberOfQuads = this->NumberOfQuads;
   options.FeatureAngle = this->FeatureAngle;
   options.Seed = this->Seed;
+  options.FitRelaxation = this->FitRelaxation;
   options.Method = static_cast<bsr::LayoutMethod>(this->Method);
   options.Eigenfunction = this->Eigenfunction;
   options.Persistence = this->Persistence;
@@ -209,6 +210,7 @@ void vtkQuadRemesh::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Sizing: " << this->Sizing << "\n";
   os << indent << "SizeArray: " << this->SizeArray << "\n";
   os << indent << "SmallestComponent: " << this->SmallestComponent << "\n";
+  os << indent << "FitRelaxation: " << this->FitRelaxation << "\n";
   os << indent << "Seed: " << this->Seed << "\n";
   os << indent << "Eigenfunction: " << this->Eigenfunction << "\n";
   os << indent << "Persistence: " << this->Persistence << "\n";

@@ -129,7 +129,17 @@ private:
       out.Mesh.Quads.push_back(quad);
       out.Mesh.Region.push_back(this->D.Mesh.Region[q]);
     }
+    for (const auto& c : this->D.Creases)
+    {
+      const Index a = number[c[0]];
+      const Index b = number[c[1]];
+      if (a >= 0 && b >= 0)
+      {
+        out.Creases.push_back({std::min(a, b), std::max(a, b)});
+      }
+    }
     this->D = std::move(out);
+    this->D.completeCreases();
   }
 
   LayoutDraft& D;

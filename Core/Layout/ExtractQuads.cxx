@@ -69,8 +69,20 @@ public:
         v = number[v];
       }
       draft.Mesh.Quads.push_back(quad);
+      draft.Mesh.Region.push_back(this->S.Region[f]);
     }
-    draft.Mesh.Region.assign(draft.Mesh.Quads.size(), 0);
+    for (Index h = 0; h < static_cast<Index>(this->S.Vertex.size()); ++h)
+    {
+      if (this->inside(h) && this->S.Crease[h])
+      {
+        const Index a = number[this->root(this->S.start(h))];
+        const Index b = number[this->root(this->S.end(h))];
+        if (a >= 0 && b >= 0 && a != b)
+        {
+          draft.Creases.push_back({std::min(a, b), std::max(a, b)});
+        }
+      }
+    }
     this->borders(number, borders, regions);
     return draft;
   }

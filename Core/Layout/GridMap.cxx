@@ -1,11 +1,13 @@
 #include "Layout/GridMap.h"
 
+#include "Common/Parallel.h"
 #include "Layout/GridTopology.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
 
+#include <algorithm>
 #include <cmath>
 
 namespace bsr
@@ -13,30 +15,105 @@ namespace bsr
 namespace
 {
 using Sparse = Eigen::SparseMatrix<double>;
+using Factors = Eigen::SimplicialLDLT<Sparse>;
 constexpr Index MostIntegers = 1200;
 constexpr int StiffeningPasses = 2;
 
 /// A corner coordinate as a combination of unknowns.
 using Combination = std::vector<std::pair<Index, double>>;
 
+/// Columns of L^-1 P B for sparse B: only the paths to the root of the elimination tree are
+/// touched.
+Sparse forwardSolved(const Factors& factors, const Sparse& b)
+{
+  const auto& lower = factors.matrixL().nestedExpression();
+  const auto n = static_cast<Index>(lower.cols());
+  std::vector<Index> parent(n, -1);
+  for (Index j = 0; j < n; ++j)
+  {
+    Sparse::InnerIterator it(lower, j);
+    for (; it && it.row() <= j; ++it)
+    {
+    }
+    parent[j] = it ? static_cast<Index>(it.row()) : -1;
+  }
+  const auto& permute = factors.permutationP().indices();
+  std::vector<std::vector<std::pair<Index, double>>> columns(b.cols());
+  parallelFor(0, b.cols(), 8,
+    [&](std::int64_t first, std::int64_t last)
+    {
+      std::vector<double> x(n, 0.0);
+      std::vector<std::uint8_t> seen(n, 0);
+      for (std::int64_t c = first; c < last; ++c)
+      {
+        std::vector<Index> reached;
+        for (Sparse::InnerIterator it(b, c); it; ++it)
+        {
+          const Index i = permute[it.row()];
+          x[i] = it.value();
+          for (Index j = i; j >= 0 && seen[j] == 0; j = parent[j])
+          {
+            seen[j] = 1;
+            reached.push_back(j);
+          }
+        }
+        std::sort(reached.begin(), reached.end());
+        for (Index j : reached)
+        {
+          for (Sparse::InnerIterator it(lower, j); it; ++it)
+          {
+            if (it.row() > j)
+            {
+              x[it.row()] -= it.value() * x[j];
+            }
+          }
+          columns[c].emplace_back(j, x[j]);
+          x[j] = 0.0;
+          seen[j] = 0;
+        }
+      }
+    });
+  Sparse out(n, b.cols());
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t c = 0; c < columns.size(); ++c)
+  {
+    for (const auto& [row, value] : columns[c])
+    {
+      entries.emplace_back(row, static_cast<Index>(c), value);
+    }
+  }
+  out.setFromTriplets(entries.begin(), entries.end());
+  return out;
+}
+
 class GridSolver
 {
 public:
-  GridSolver(
-    const TriangleSurface& s, const GridTopology& topology, const std::vector<double>& cells)
-      : S(s), Topology(topology), Cells(cells), Stiffness(s.Region.size(), 1.0)
+  GridSolver(const TriangleSurface& s, const GridTopology& topology)
+      : S(s), Topology(topology), Stiffness(s.Region.size(), 1.0)
   {
-    this->number();
-  }
-
-  template <class Offer>
-  void run(const Offer& offer)
-  {
-    const Index ny = this->Topology.Kernel.freeVariables();
-    if (ny > MostIntegers || !this->assemble() || !this->reduce())
+    if (!topology.Usable || topology.Kernel.freeVariables() > MostIntegers)
     {
       return;
     }
+    this->number();
+    this->cacheCombinations();
+    this->Usable = this->factor(this->Base) && this->reduce();
+  }
+
+  template <class Offer>
+  void run(const std::vector<double>& cells, const Offer& offer)
+  {
+    if (!this->Usable)
+    {
+      return;
+    }
+    const Index ny = this->Topology.Kernel.freeVariables();
+    this->Cells = &cells;
+    this->Stiffness.assign(this->S.Region.size(), 1.0);
+    this->wish();
+    this->Pull = this->By - this->Reduced.transpose() *
+                              (this->BaseInverse.asDiagonal() * this->forward(this->Br));
     this->round();
     std::vector<std::int64_t> integers(static_cast<std::size_t>(ny));
     for (Index i = 0; i < ny; ++i)
@@ -45,19 +122,23 @@ public:
     }
     for (int pass = 0; pass < StiffeningPasses; ++pass)
     {
-      const Eigen::VectorXd right = this->Br - this->Hry * this->Y;
-      const Eigen::VectorXd x = this->Solver.solve(right);
-      if (this->Solver.info() != Eigen::Success || !x.allFinite())
+      const Factors& factors = pass == 0 ? this->Base : this->Stiff;
+      const Sparse& mixed = pass == 0 ? this->BaseMixed : this->Hry;
+      const Eigen::VectorXd right = this->Br - mixed * this->Y;
+      const Eigen::VectorXd x = factors.solve(right);
+      if (factors.info() != Eigen::Success || !x.allFinite())
       {
         return;
       }
       std::vector<Vec2> uv;
       this->evaluate(x, uv);
       const int folded = this->stiffen(uv);
-      if (offer(std::move(uv), integers, folded) || folded == 0 || !this->assemble())
+      if (offer(std::move(uv), integers, folded) || folded == 0 || pass + 1 == StiffeningPasses ||
+          !this->factor(this->Stiff))
       {
         return;
       }
+      this->wish();
     }
   }
 
@@ -136,18 +217,13 @@ private:
     return twice;
   }
 
-  bool assemble()
+  /// Writes down and factors the quadratic part of the energy.
+  bool factor(Factors& factors)
   {
-    if (this->Corner.empty())
-    {
-      this->cacheCombinations();
-    }
     const Index ny = this->Topology.Kernel.freeVariables();
     std::vector<Eigen::Triplet<double>> rr;
     std::vector<Eigen::Triplet<double>> ry;
     this->Hyy = Eigen::MatrixXd::Zero(ny, ny);
-    this->Br = Eigen::VectorXd::Zero(this->Reals);
-    this->By = Eigen::VectorXd::Zero(ny);
     for (Index f = 0; f < this->S.faces(); ++f)
     {
       if (this->Topology.Field.Inside[f])
@@ -159,33 +235,25 @@ private:
     {
       rr.emplace_back(i, i, 1e-9);
     }
-    this->Hrr.resize(this->Reals, this->Reals);
-    this->Hrr.setFromTriplets(rr.begin(), rr.end());
+    Sparse h(this->Reals, this->Reals);
+    h.setFromTriplets(rr.begin(), rr.end());
     this->Hry.resize(this->Reals, ny);
     this->Hry.setFromTriplets(ry.begin(), ry.end());
-    this->Solver.compute(this->Hrr);
-    return this->Solver.info() == Eigen::Success;
+    factors.compute(h);
+    return factors.info() == Eigen::Success;
   }
 
   template <class List>
   void addFace(Index f, List& rr, List& ry)
   {
     std::array<Vec2, 3> g;
-    const double area = 0.5 * this->gradients(f, g);
-    const double cell = this->Cells[f];
-    const double angle = this->Topology.Field.Angle[f];
-    const std::array<Vec2, 2> wish = {Vec2(std::cos(angle), std::sin(angle)) / cell,
-      Vec2(-std::sin(angle), std::cos(angle)) / cell};
-    // The area of all cells weighs alike.
-    const double weight = this->Stiffness[f] * area;
+    const double weight = this->Stiffness[f] * 0.5 * this->gradients(f, g);
     for (int c = 0; c < 2; ++c)
     {
       for (int i = 0; i < 3; ++i)
       {
         for (const auto& [a, fa] : this->Corner[2 * (3 * f + i) + c])
         {
-          const double b = weight * g[i].dot(wish[c]) * fa;
-          (a < this->Reals ? this->Br[a] : this->By[a - this->Reals]) += b;
           for (int j = 0; j < 3; ++j)
           {
             const double w = weight * g[i].dot(g[j]) * fa;
@@ -193,7 +261,10 @@ private:
             {
               if (a < this->Reals && d < this->Reals)
               {
-                rr.emplace_back(a, d, w * fd);
+                if (d <= a)
+                {
+                  rr.emplace_back(a, d, w * fd);
+                }
               }
               else if (a < this->Reals)
               {
@@ -210,14 +281,53 @@ private:
     }
   }
 
+  /// The linear part of the energy: gradients wanted, by field and size of cells.
+  void wish()
+  {
+    this->Br = Eigen::VectorXd::Zero(this->Reals);
+    this->By = Eigen::VectorXd::Zero(this->Topology.Kernel.freeVariables());
+    for (Index f = 0; f < this->S.faces(); ++f)
+    {
+      if (!this->Topology.Field.Inside[f])
+      {
+        continue;
+      }
+      std::array<Vec2, 3> g;
+      // The area of all cells weighs alike.
+      const double weight = this->Stiffness[f] * 0.5 * this->gradients(f, g);
+      const double cell = (*this->Cells)[f];
+      const double angle = this->Topology.Field.Angle[f];
+      const std::array<Vec2, 2> wish = {Vec2(std::cos(angle), std::sin(angle)) / cell,
+        Vec2(-std::sin(angle), std::cos(angle)) / cell};
+      for (int c = 0; c < 2; ++c)
+      {
+        for (int i = 0; i < 3; ++i)
+        {
+          for (const auto& [a, fa] : this->Corner[2 * (3 * f + i) + c])
+          {
+            const double b = weight * g[i].dot(wish[c]) * fa;
+            (a < this->Reals ? this->Br[a] : this->By[a - this->Reals]) += b;
+          }
+        }
+      }
+    }
+  }
+
+  Eigen::VectorXd forward(const Eigen::VectorXd& right) const
+  {
+    const Eigen::VectorXd permuted = this->Base.permutationP() * right;
+    return this->Base.matrixL().solve(permuted);
+  }
+
   /// The energy as a function of the whole unknowns alone.
   bool reduce()
   {
-    const Eigen::MatrixXd dense = Eigen::MatrixXd(this->Hry);
-    const Eigen::MatrixXd solved = this->Solver.solve(dense);
-    this->Schur = this->Hyy - this->Hry.transpose() * solved;
-    this->Pull = this->By - solved.transpose() * this->Br;
-    return this->Schur.allFinite() && this->Pull.allFinite();
+    this->BaseMixed = this->Hry;
+    this->Reduced = forwardSolved(this->Base, this->Hry);
+    this->BaseInverse = this->Base.vectorD().cwiseInverse();
+    const Sparse scaled = this->BaseInverse.asDiagonal() * this->Reduced;
+    this->Schur = this->Hyy - Eigen::MatrixXd(Sparse(this->Reduced.transpose() * scaled));
+    return this->Schur.allFinite();
   }
 
   /// Fixes the whole unknowns: always the one whose rounding costs least, then single steps.
@@ -306,7 +416,8 @@ private:
       const Vec2 a = uv[3 * f + 1] - uv[3 * f];
       const Vec2 b = uv[3 * f + 2] - uv[3 * f];
       const double area = a[0] * b[1] - a[1] * b[0];
-      const double wished = 2.0 * this->S.areaNormal(f).norm() / (this->Cells[f] * this->Cells[f]);
+      const double cell = (*this->Cells)[f];
+      const double wished = 2.0 * this->S.areaNormal(f).norm() / (cell * cell);
       folded += area <= 0.0;
       if (area < 0.1 * wished)
       {
@@ -326,47 +437,67 @@ private:
 
   const TriangleSurface& S;
   const GridTopology& Topology;
-  const std::vector<double>& Cells;
+  const std::vector<double>* Cells = nullptr;
   std::vector<double> Stiffness;
   std::vector<Index> Real;
   Index Reals = 0;
   std::vector<Combination> Corner;
-  Sparse Hrr;
+  bool Usable = false;
   Sparse Hry;
+  Sparse BaseMixed;            ///< Hry without stiffening
+  Sparse Reduced;              ///< L^-1 P Hry
+  Eigen::VectorXd BaseInverse; ///< of the diagonal factor
   Eigen::MatrixXd Hyy;
   Eigen::MatrixXd Schur;
   Eigen::VectorXd Br;
   Eigen::VectorXd By;
   Eigen::VectorXd Pull;
   Eigen::VectorXd Y;
-  Eigen::SimplicialLDLT<Sparse> Solver;
+  Factors Base;
+  Factors Stiff;
 };
 } // namespace
 
-void gridMap(const TriangleSurface& s, const CrossField& field, const std::vector<double>& cells,
-  const std::function<bool(const GridMap&)>& accept)
+struct GridMapper::Solver
 {
-  if (field.Angle.empty())
+  GridTopology Topology;
+  GridSolver Grid;
+  GridMap Map;
+
+  Solver(const TriangleSurface& s, const CrossField& field)
+      : Topology(gridTopology(s, field)), Grid(s, this->Topology)
+  {
+    this->Map.Surface = s;
+    this->Map.Inside = field.Inside;
+    this->Map.Singular = this->Topology.Singular;
+  }
+};
+
+GridMapper::GridMapper(const TriangleSurface& s, const CrossField& field)
+{
+  if (!field.Angle.empty())
+  {
+    this->Impl = std::make_unique<Solver>(s, field);
+  }
+}
+
+GridMapper::~GridMapper() = default;
+
+void GridMapper::run(
+  const std::vector<double>& cells, const std::function<bool(const GridMap&)>& accept)
+{
+  if (!this->Impl)
   {
     return;
   }
-  const GridTopology topology = gridTopology(s, field);
-  if (!topology.Usable)
-  {
-    return;
-  }
-  GridMap map;
-  map.Surface = s;
-  map.Inside = field.Inside;
-  map.Singular = topology.Singular;
-  GridSolver(s, topology, cells)
-    .run(
-      [&](std::vector<Vec2> uv, const std::vector<std::int64_t>& integers, int folded)
-      {
-        map.UV = std::move(uv);
-        map.Folded = folded;
-        topology.transitions(s, integers, map.Turn, map.Shift);
-        return accept(map);
-      });
+  GridMap& map = this->Impl->Map;
+  this->Impl->Grid.run(cells,
+    [&](std::vector<Vec2> uv, const std::vector<std::int64_t>& integers, int folded)
+    {
+      map.UV = std::move(uv);
+      map.Folded = folded;
+      this->Impl->Topology.transitions(map.Surface, integers, map.Turn, map.Shift);
+      return accept(map);
+    });
 }
 } // namespace bsr

@@ -3,6 +3,7 @@
 #include "Layout/CrossField.h"
 
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace bsr
@@ -46,10 +47,24 @@ struct GridMap
  * Integrates a cross field (mixed-integer quadrangulation, Bommes et al. 2009): the least-squares
  * problem is reduced to the integer unknowns (a dense Schur complement), which are fixed one by
  * one in the order of least harm and improved by single steps; then triangles that fold are
- * stiffened. Borders towards regions (not holes) get an even number of cells.
- * `cells` is the side of a cell wanted in each triangle. Each map on the way is offered to
- * `accept`, which returns true if it is good enough; there may be none.
+ * stiffened. Borders towards regions outside (not holes) get an even number of cells.
+ * What does not depend on the size of the cells is computed once, by the constructor.
  */
-void gridMap(const TriangleSurface& s, const CrossField& field, const std::vector<double>& cells,
-  const std::function<bool(const GridMap&)>& accept);
+class GridMapper
+{
+public:
+  /// \pre `s` and `field` outlive the mapper.
+  GridMapper(const TriangleSurface& s, const CrossField& field);
+  ~GridMapper();
+  GridMapper(const GridMapper&) = delete;
+  GridMapper& operator=(const GridMapper&) = delete;
+
+  /// `cells` is the side of a cell wanted in each triangle. Each map on the way is offered to
+  /// `accept`, which returns true if it is good enough; there may be none.
+  void run(const std::vector<double>& cells, const std::function<bool(const GridMap&)>& accept);
+
+private:
+  struct Solver;
+  std::unique_ptr<Solver> Impl;
+};
 } // namespace bsr

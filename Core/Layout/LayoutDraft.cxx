@@ -301,6 +301,37 @@ void LayoutDraft::project(const ReferenceSurface& reference)
     });
 }
 
+void LayoutDraft::completeCreases()
+{
+  std::vector<std::array<Index, 3>> all; // low, high, region
+  for (std::size_t q = 0; q < this->Mesh.Quads.size(); ++q)
+  {
+    const auto& c = this->Mesh.Quads[q];
+    for (int k = 0; k < 4; ++k)
+    {
+      const Index a = c[k];
+      const Index b = c[(k + 1) % 4];
+      all.push_back({std::min(a, b), std::max(a, b), this->Mesh.Region[q]});
+    }
+  }
+  std::sort(all.begin(), all.end());
+  for (std::size_t i = 0; i < all.size();)
+  {
+    std::size_t j = i;
+    while (j < all.size() && all[j][0] == all[i][0] && all[j][1] == all[i][1])
+    {
+      ++j;
+    }
+    if (j - i == 1 || all[j - 1][2] != all[i][2])
+    {
+      this->Creases.push_back({all[i][0], all[i][1]});
+    }
+    i = j;
+  }
+  std::sort(this->Creases.begin(), this->Creases.end());
+  this->Creases.erase(std::unique(this->Creases.begin(), this->Creases.end()), this->Creases.end());
+}
+
 LayoutReport checkLayout(const QuadMesh& mesh)
 {
   LayoutReport report;

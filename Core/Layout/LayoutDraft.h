@@ -20,7 +20,11 @@ struct LayoutDraft
 {
   QuadMesh Mesh;
   std::vector<VertexKind> Kind; ///< per point
+  /// Edges on creases and boundaries, each as (lower, higher) point, sorted.
+  std::vector<std::array<Index, 2>> Creases;
 
+  /// Adds boundaries and region borders to the creases, and puts these in order.
+  void completeCreases();
   /// Puts each point, by its kind, onto the reference.
   void project(const ReferenceSurface& reference);
 };

@@ -57,7 +57,23 @@ public:
 private:
   bool allowed(Index h) const
   {
-    return !this->S.Crease[h] && !this->S.hole(h / 3) && !this->S.hole(this->S.Opposite[h] / 3);
+    return !this->S.Crease[h] && !this->S.hole(h / 3) && !this->S.hole(this->S.Opposite[h] / 3) &&
+           this->quarters(h) > 0.1;
+  }
+  /// The worst scaled Jacobian of the four quads that a pair is split into.
+  double quarters(Index h) const
+  {
+    const TriangleSurface& s = this->S;
+    const std::array<Vec3, 4> p = {s.Points[s.start(h)], s.Points[s.apex(s.Opposite[h])],
+      s.Points[s.end(h)], s.Points[s.apex(h)]};
+    const Vec3 center = 0.25 * (p[0] + p[1] + p[2] + p[3]);
+    double worst = 1.0;
+    for (int k = 0; k < 4; ++k)
+    {
+      worst = std::min(worst,
+        scaledJacobian(p[k], 0.5 * (p[k] + p[(k + 1) % 4]), center, 0.5 * (p[k] + p[(k + 3) % 4])));
+    }
+    return worst;
   }
   bool free(Index h) const
   {
@@ -219,17 +235,20 @@ struct Splitter
     {
       const Index h = border[i];
       const Index before = border[(i + border.size() - 1) % border.size()];
+      if (this->S.Crease[h])
+      {
+        this->Draft.Creases.push_back({this->vertex(this->S.start(h)), this->edge(h)});
+        this->Draft.Creases.push_back({this->vertex(this->S.end(h)), this->edge(h)});
+      }
       this->Draft.Mesh.Quads.push_back(
         {this->vertex(this->S.start(h)), this->edge(h), middle, this->edge(before)});
       this->Draft.Mesh.Region.push_back(this->S.Region[h / 3]);
     }
   }
 };
-} // namespace
 
-LayoutDraft pairTriangles(const TriangleSurface& s)
+LayoutDraft splitFaces(const TriangleSurface& s, const std::vector<Index>& over)
 {
-  const std::vector<Index> over = Pairing(s).run();
   Splitter split{
     s, over, {}, std::vector<Index>(s.Points.size(), -1), std::vector<Index>(s.Vertex.size(), -1)};
   for (Index f = 0; f < s.faces(); ++f)
@@ -250,6 +269,22 @@ LayoutDraft pairTriangles(const TriangleSurface& s)
         TriangleSurface::prev(o)});
     }
   }
+  for (auto& c : split.Draft.Creases)
+  {
+    std::sort(c.begin(), c.end());
+  }
+  split.Draft.completeCreases();
   return std::move(split.Draft);
+}
+} // namespace
+
+LayoutDraft pairTriangles(const TriangleSurface& s)
+{
+  return splitFaces(s, Pairing(s).run());
+}
+
+LayoutDraft splitTriangles(const TriangleSurface& s)
+{
+  return splitFaces(s, std::vector<Index>(s.Region.size(), -1));
 }
 } // namespace bsr

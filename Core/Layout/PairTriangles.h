@@ -12,4 +12,7 @@ namespace bsr
  * and up to half as many more.
  */
 LayoutDraft pairTriangles(const TriangleSurface& s);
+
+/// The same without pairs: three quads in the plane of each triangle.
+LayoutDraft splitTriangles(const TriangleSurface& s);
 } // namespace bsr

@@ -1,6 +1,7 @@
 #include "Layout/ParametrizedLayout.h"
 
 #include "Common/Parallel.h"
+#include "Common/UnionFind.h"
 #include "Layout/CapDisc.h"
 #include "Layout/CleanLayout.h"
 #include "Layout/CrossField.h"
@@ -34,6 +35,49 @@ std::vector<double> cellsOf(const TriangleSurface& s, const Sizing& sizing, doub
   return cells;
 }
 
+/// Is every piece of a region other than 0 a disc?
+bool regionsAreDiscs(const TriangleSurface& s)
+{
+  UnionFind pieces(s.faces());
+  for (Index h = 0; h < static_cast<Index>(s.Vertex.size()); ++h)
+  {
+    if (s.Region[h / 3] == s.Region[s.Opposite[h] / 3])
+    {
+      pieces.join(h / 3, s.Opposite[h] / 3);
+    }
+  }
+  std::vector<int> euler(s.Region.size(), 0);
+  for (Index f = 0; f < s.faces(); ++f)
+  {
+    ++euler[pieces.find(f)];
+  }
+  for (Index h = 0; h < static_cast<Index>(s.Vertex.size()); ++h)
+  {
+    const std::int64_t mine = pieces.find(h / 3);
+    euler[mine] -= h < s.Opposite[h] || pieces.find(s.Opposite[h] / 3) != mine;
+  }
+  std::vector<std::int64_t> seen;
+  for (Index v = 0; v < s.vertices(); ++v)
+  {
+    seen.clear();
+    s.around(v, [&](Index h) { seen.push_back(pieces.find(h / 3)); });
+    std::sort(seen.begin(), seen.end());
+    seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+    for (std::int64_t piece : seen)
+    {
+      ++euler[piece];
+    }
+  }
+  for (Index f = 0; f < s.faces(); ++f)
+  {
+    if (s.Region[f] > 0 && pieces.find(f) == f && euler[f] != 1)
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
 /// The layout of a map: extraction, repair, caps, check. No quads if it is not valid.
 LayoutDraft layoutOf(const GridMap& map, int euler)
 {
@@ -57,11 +101,10 @@ LayoutDraft layoutOf(const GridMap& map, int euler)
   return report.Valid && report.Euler == euler && report.MaxValence <= 8 ? draft : LayoutDraft{};
 }
 
-LayoutDraft tryField(
-  const TriangleSurface& s, const CrossField& field, const std::vector<double>& cells, int euler)
+LayoutDraft tryCells(GridMapper& mapper, const std::vector<double>& cells, int euler)
 {
   LayoutDraft draft;
-  gridMap(s, field, cells,
+  mapper.run(cells,
     [&](const GridMap& map)
     {
       draft = layoutOf(map, euler);
@@ -97,13 +140,15 @@ Result<LayoutDraft> parametrizedLayout(const TriangleSurface& s, const Reference
     return status;
   }
   std::vector<std::uint8_t> inside(fine.Region.size());
+  const bool discs = regionsAreDiscs(fine);
   for (std::size_t f = 0; f < inside.size(); ++f)
   {
-    inside[f] = fine.Region[f] == 0;
+    inside[f] = discs ? fine.Region[f] == 0 : fine.Region[f] != TriangleSurface::HoleRegion;
   }
   const int euler = s.eulerCharacteristic();
   LayoutDraft best;
   double bestCost = std::numeric_limits<double>::infinity();
+  int failed = 0;
   const std::array<double, 3> curvature = {1.0, 0.2, 5.0};
   for (std::size_t i = 0; i < curvature.size() && bestCost > GoodCost; ++i)
   {
@@ -112,6 +157,7 @@ Result<LayoutDraft> parametrizedLayout(const TriangleSurface& s, const Reference
     options.Size = cell0;
     options.Curvature = curvature[(i + static_cast<std::size_t>(std::abs(seed))) % 3];
     const CrossField field = crossField(fine, inside, options);
+    GridMapper mapper(fine, field);
     double cell = cell0;
     for (int attempt = 0; attempt < 3; ++attempt)
     {
@@ -119,10 +165,14 @@ Result<LayoutDraft> parametrizedLayout(const TriangleSurface& s, const Reference
       {
         return Status::cancelled();
       }
-      LayoutDraft draft = tryField(fine, field, cellsOf(fine, sizing, cell), euler);
+      LayoutDraft draft = tryCells(mapper, cellsOf(fine, sizing, cell), euler);
       const auto got = static_cast<int>(draft.Mesh.Quads.size());
       if (got == 0)
       {
+        if (best.Mesh.Quads.empty() && ++failed > 3)
+        {
+          return best; // there is no room for a map
+        }
         cell *= 0.93;
         continue;
       }

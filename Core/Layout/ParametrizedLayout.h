@@ -8,8 +8,9 @@
 namespace bsr
 {
 /**
- * A layout of one component by an integer-grid map of a cross field. Regions other than 0 must be
- * discs: the map covers region 0 and ends along their borders, which are then capped. Several
+ * A layout of one component by an integer-grid map of a cross field. Where all regions other than 0
+ * are discs, the map covers region 0 and ends along their borders, which are then capped; else it
+ * covers all regions and follows their borders. Several
  * fields are tried; the best valid layout is relaxed and returned. No quads: none was found, and
  * another road must be taken (that is not an error).
  */

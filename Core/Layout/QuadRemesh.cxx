@@ -1,21 +1,21 @@
 #include "Layout/QuadRemesh.h"
 
-#include "Layout/PairTriangles.h"
-#include "Layout/ParametrizedLayout.h"
-#include "Layout/RelaxLayout.h"
+#include "Layout/BoxLayout.h"
+#include "Layout/FitLayout.h"
 #include "Mesh/Decimate.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <numeric>
 
 namespace bsr
 {
 namespace
 {
 constexpr int MostQuads = 200000;
-constexpr double PoorCost = 25.0; ///< of a map's layout: the other road may do better
+constexpr int SpeckQuads = 11; ///< spheres of no more quads become boxes
 
 Status checkOptions(const QuadRemeshOptions& o)
 {
@@ -123,106 +123,32 @@ std::vector<Vec3> samplesOf(const TriangleSurface& s)
   return samples;
 }
 
-/// Bending of the surface, measured on triangles of a fifth of a quad.
-Result<Sizing> sizingOf(TriangleSurface s, const ReferenceSurface& reference, int quads,
-  QuadSizing kind, const Sizing::Field& field, Monitor& monitor)
+/// How many quads each component gets: by area, but each enough to show its shape, or, where there
+/// are very many specks, six.
+std::vector<int> shares(const std::vector<TriangleSurface>& surfaces, int quads)
 {
-  const double cell = std::sqrt(s.area() / quads);
-  QuietMonitor quiet(monitor);
-  if (monitor.cancelled())
+  const auto n = static_cast<double>(surfaces.size());
+  const int least = static_cast<int>(std::clamp(0.3 * quads / n, 6.0, 24.0));
+  std::vector<double> area;
+  for (const TriangleSurface& s : surfaces)
   {
-    return Status::cancelled();
+    area.push_back(s.area());
   }
-  if (Status status = remesh(
-        s, reference, [&](const Vec3&) { return 0.2 * cell; }, 3, quiet);
-      !status)
+  // Largest first: those whose share is too small are at the end.
+  double left = quads;
+  double leftArea = std::accumulate(area.begin(), area.end(), 0.0);
+  std::vector<int> out(surfaces.size(), least);
+  std::size_t large = surfaces.size();
+  while (large > 1 && area[large - 1] * left < least * leftArea)
   {
-    return status;
+    left = std::max(left - least, 0.0);
+    leftArea -= area[--large];
   }
-  return Sizing(s, cell, kind, field);
-}
-
-/// The layout of one component, by the fallback: pairs of triangles give four quads each, so half
-/// as many triangles as quads are wanted; the edge length is corrected until the count fits.
-Result<LayoutDraft> pairedLayout(const TriangleSurface& s, const ReferenceSurface& reference,
-  const Sizing& sizing, int quads, Monitor& monitor)
-{
-  constexpr int tries = 5;
-  double cell = sizing.cellFor(quads);
-  LayoutDraft best;
-  double bestMiss = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < tries && bestMiss > 0.06; ++i)
+  for (std::size_t i = 0; i < large; ++i)
   {
-    SubMonitor part(monitor, 0.5 * i / tries, 0.5 * (i + 1) / tries);
-    TriangleSurface coarse = s;
-    const double edge = std::sqrt(8.0 / std::sqrt(3.0));
-    const auto length = [&](const Vec3& p) { return edge * sizing.side(p, cell); };
-    if (Status status = remesh(coarse, reference, length, 8, part); !status)
-    {
-      return status;
-    }
-    LayoutDraft draft = pairTriangles(coarse);
-    const double ratio = static_cast<double>(draft.Mesh.Quads.size()) / quads;
-    const double miss = std::abs(std::log(ratio));
-    if (miss < bestMiss)
-    {
-      bestMiss = miss;
-      best = std::move(draft);
-    }
-    if (ratio > 3.0 && i > 0)
-    {
-      break; // the topology needs so many
-    }
-    cell *= std::clamp(std::sqrt(ratio), 0.6, 1.6);
+    out[i] = std::max(least, static_cast<int>(std::lround(left * area[i] / leftArea)));
   }
-  SubMonitor second(monitor, 0.5, 1.0);
-  if (Status status = relaxLayout(best, reference, 40, second); !status)
-  {
-    return status;
-  }
-  return best;
-}
-
-/// The better of the two roads; the second is taken where the first gave nothing good.
-Result<LayoutDraft> bestLayout(const TriangleSurface& s, const ReferenceSurface& reference,
-  const Sizing& sizing, int quads, int seed, LayoutStage& stage, Monitor& monitor)
-{
-  LayoutDraft best;
-  double cost = std::numeric_limits<double>::infinity();
-  // Many handles on few quads leave no room for a map.
-  if (-6 * s.eulerCharacteristic() < quads)
-  {
-    SubMonitor first(monitor, 0.0, 0.7);
-    auto draft = parametrizedLayout(s, reference, sizing, quads, seed, first);
-    if (!draft)
-    {
-      return draft;
-    }
-    best = std::move(*draft);
-    if (!best.Mesh.Quads.empty())
-    {
-      cost = layoutCost(best, checkLayout(best.Mesh), s, reference, quads);
-    }
-  }
-  stage = LayoutStage::Parametrized;
-  if (cost < PoorCost)
-  {
-    return best;
-  }
-  SubMonitor second(monitor, 0.7, 1.0);
-  auto draft = pairedLayout(s, reference, sizing, quads, second);
-  if (!draft)
-  {
-    return draft;
-  }
-  const LayoutReport report = checkLayout(draft->Mesh);
-  const bool valid = report.Valid && report.Euler == s.eulerCharacteristic();
-  if (best.Mesh.Quads.empty() || (valid && layoutCost(*draft, report, s, reference, quads) < cost))
-  {
-    stage = LayoutStage::Paired;
-    return draft;
-  }
-  return best;
+  return out;
 }
 
 void append(PartitionedSurface& all, const PartitionedSurface& part, Index firstCell)
@@ -276,6 +202,91 @@ void append(QuadMesh& all, const QuadMesh& part)
     all.Quads.push_back({q[0] + base, q[1] + base, q[2] + base, q[3] + base});
   }
 }
+Result<FieldLayout> layOut(TriangleSurface& s, const ReferenceSurface& reference, int quads,
+  const QuadRemeshOptions& options, const Sizing::Field& field, QuadLayout& layout,
+  Monitor& monitor)
+{
+  SubMonitor laying(monitor, 0.0, 0.9);
+  auto sizing = Sizing::measured(s, reference, quads, options.Sizing, field, monitor);
+  if (!sizing)
+  {
+    return sizing.status();
+  }
+  if (options.Method == LayoutMethod::MorseSmale)
+  {
+    auto draft = morseDraft(s, reference, *sizing, quads, options, layout, laying);
+    return draft ? Result<FieldLayout>(FieldLayout{std::move(*draft), LayoutStage::MorseSmale})
+                 : Result<FieldLayout>(draft.status());
+  }
+  append(layout.Surface, {s.toMesh(), {}, {}, {}}, 0);
+  auto found =
+    fieldLayout(s, reference, *sizing, {quads, options.Seed, options.Sizing, field}, laying);
+  SubMonitor fitting(monitor, 0.9, 1.0);
+  if (found && options.FitRelaxation)
+  {
+    if (Status status = fitLayout(found->Draft, s, fitting); !status)
+    {
+      return status;
+    }
+  }
+  return found;
+}
+
+/// Adds the layout of a component, which is decimated on the way; `share` is that of its area.
+Status addComponent(TriangleSurface& s, int quads, double share, const QuadRemeshOptions& options,
+  const Sizing::Field& field, QuadLayout& layout, Monitor& monitor)
+{
+  Clock clock;
+  const std::vector<Vec3> samples = samplesOf(s);
+  const int euler = s.eulerCharacteristic();
+  const bool morse = options.Method == LayoutMethod::MorseSmale;
+  const bool speck = !morse && quads <= SpeckQuads && isSphere(s);
+  if (monitor.cancelled())
+  {
+    return Status::cancelled();
+  }
+  if (!speck)
+  {
+    SubMonitor decimating(monitor, 0.0, 0.4);
+    DecimateOptions decimation;
+    decimation.Target = std::max(20000, 60 * quads);
+    decimation.Most = 3 * decimation.Target;
+    decimation.MaximumError = 0.02 * std::sqrt(s.area() / quads);
+    if (Status status = decimate(s, decimation, decimating); !status)
+    {
+      return status;
+    }
+  }
+  layout.Seconds.Decimation += clock.lap();
+  const ReferenceSurface reference(s);
+  SubMonitor laying(monitor, 0.4, 1.0);
+  auto found = speck ? Result<FieldLayout>(FieldLayout{boxLayout(s), LayoutStage::Box})
+                     : layOut(s, reference, quads, options, field, layout, laying);
+  if (!found)
+  {
+    return found.status();
+  }
+  if (speck)
+  {
+    append(layout.Surface, {s.toMesh(), {}, {}, {}}, 0);
+  }
+  layout.Seconds.Layout += clock.lap();
+  layout.MinimumQuads += leastQuads(euler, boundaryLoops(s));
+  const LayoutReport report = checkLayout(found->Draft.Mesh);
+  if (!report.Valid || report.Euler != euler)
+  {
+    return Status::failed("No valid layout was found: " +
+                          (report.Valid ? std::string("the topology changed") : report.Problem) +
+                          "; try another NumberOfQuads or Seed.");
+  }
+  const LayoutDistance d = layoutDistance(found->Draft.Mesh, s, reference, samples);
+  layout.Distance.Maximum = std::max(layout.Distance.Maximum, d.Maximum);
+  layout.Distance.Mean += share * d.Mean;
+  layout.Stages.push_back(found->Stage);
+  append(layout.Mesh, found->Draft.Mesh);
+  layout.Seconds.Measure += clock.lap();
+  return Status::ok();
+}
 } // namespace
 
 int leastQuads(int euler, int boundaryLoops)
@@ -327,59 +338,20 @@ Result<QuadLayout> quadRemesh(
     total += s.area();
   }
   layout.Seconds.Repair = clock.lap();
+  const std::vector<int> counts = shares(*surfaces, options.NumberOfQuads);
   double done = 0.0;
-  for (TriangleSurface& s : *surfaces)
+  for (std::size_t i = 0; i < surfaces->size(); ++i)
   {
+    TriangleSurface& s = (*surfaces)[i];
     const double share = s.area() / total;
     SubMonitor part(rest, done, done + share);
     done += share;
-    const int quads = std::max(24, static_cast<int>(std::lround(share * options.NumberOfQuads)));
-    const int euler = s.eulerCharacteristic();
-    layout.MinimumQuads += leastQuads(euler, boundaryLoops(s));
-    const std::vector<Vec3> samples = samplesOf(s);
-    SubMonitor decimating(part, 0.0, 0.5);
-    DecimateOptions decimation;
-    decimation.Target = std::max(20000, 60 * quads);
-    decimation.Most = 3 * decimation.Target;
-    decimation.MaximumError = 0.02 * std::sqrt(s.area() / quads);
-    if (Status status = decimate(s, decimation, decimating); !status)
+    if (Status status = addComponent(s, counts[i], share, options, field, layout, part); !status)
     {
       return status;
     }
-    layout.Seconds.Decimation += clock.lap();
-    const ReferenceSurface reference(s);
-    SubMonitor laying(part, 0.5, 0.95);
-    auto sizing = sizingOf(s, reference, quads, options.Sizing, field, monitor);
-    if (!sizing)
-    {
-      return sizing.status();
-    }
-    if (!morse)
-    {
-      append(layout.Surface, {s.toMesh(), {}, {}, {}}, 0);
-    }
-    LayoutStage stage = morse ? LayoutStage::MorseSmale : LayoutStage::Parametrized;
-    auto draft = morse ? morseDraft(s, reference, *sizing, quads, options, layout, laying)
-                       : bestLayout(s, reference, *sizing, quads, options.Seed, stage, laying);
-    if (!draft)
-    {
-      return draft.status();
-    }
-    layout.Seconds.Layout += clock.lap();
-    const LayoutReport report = checkLayout(draft->Mesh);
-    if (!report.Valid || report.Euler != euler)
-    {
-      return Status::failed("No valid layout was found: " +
-                            (report.Valid ? std::string("the topology changed") : report.Problem) +
-                            "; try another NumberOfQuads or Seed.");
-    }
-    const LayoutDistance d = layoutDistance(draft->Mesh, s, reference, samples);
-    layout.Distance.Maximum = std::max(layout.Distance.Maximum, d.Maximum);
-    layout.Distance.Mean += share * d.Mean;
-    layout.Stages.push_back(stage);
-    append(layout.Mesh, draft->Mesh);
-    layout.Seconds.Measure += clock.lap();
   }
+  clock.lap();
   layout.Report = checkLayout(layout.Mesh);
   monitor.progress(1.0);
   layout.Seconds.Measure += clock.lap();

@@ -2,9 +2,8 @@
 
 #include "Common/Monitor.h"
 #include "Common/Status.h"
-#include "Layout/LayoutDraft.h"
+#include "Layout/FieldLayout.h"
 #include "Layout/MorseLayout.h"
-#include "Layout/Sizing.h"
 #include "Mesh/BuildSurface.h"
 
 namespace bsr
@@ -26,16 +25,9 @@ struct QuadRemeshOptions
   std::vector<double> SizeField; ///< QuadSizing::Array: relative side per point of the mesh, > 0
   /// Components of less area than so many mean quads are dropped as specks; 0: none is.
   double SmallestComponent = 0.01;
+  bool FitRelaxation = true; ///< points leave the surface where patches then fit it better
   int Eigenfunction = 0;     ///< Morse-Smale: place in the spectrum, from 1; 0: automatic
   double Persistence = 0.01; ///< Morse-Smale: noise, as a share of the function's range
-};
-
-/// Which road gave the layout of a component.
-enum class LayoutStage
-{
-  Parametrized = 0, ///< integer-grid map of a cross field
-  Paired = 1,       ///< pairs of coarse triangles, split: the fallback
-  MorseSmale = 2    ///< Morse-Smale complex of an eigenfunction
 };
 
 /// Seconds of wall time, by stage, all components together.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace bsr
 {
@@ -29,8 +30,9 @@ public:
   }
 
   /// One step of every vertex towards the rectangles its quads ask for.
-  void relaxOnce(double share)
+  void relaxOnce(double share, bool guarded)
   {
+    const std::vector<Vec3> before = this->Draft.Mesh.Points;
     this->measure();
     std::vector<std::array<Vec3, 4>> asked(this->Draft.Mesh.Quads.size());
     parallelFor(0, static_cast<std::int64_t>(asked.size()), 256,
@@ -65,6 +67,20 @@ public:
     }
     this->Draft.Mesh.Points.swap(moved);
     this->Draft.project(this->Reference);
+    if (guarded)
+    {
+      this->takeBack(before);
+    }
+  }
+
+  double worst() const
+  {
+    double w = 1.0;
+    for (std::size_t q = 0; q < this->Draft.Mesh.Quads.size(); ++q)
+    {
+      w = std::min(w, scaledJacobian(this->Draft.Mesh, static_cast<Index>(q)));
+    }
+    return w;
   }
 
   /// Moves the vertices of bad quads to better places; returns the number of moves.
@@ -88,6 +104,35 @@ private:
     Index Quad;
     int At;
   };
+
+  /// Puts the points of quads that became bad back, until there are none.
+  void takeBack(const std::vector<Vec3>& before)
+  {
+    auto& points = this->Draft.Mesh.Points;
+    const auto& quads = this->Draft.Mesh.Quads;
+    std::vector<double> was(quads.size());
+    for (std::size_t q = 0; q < quads.size(); ++q)
+    {
+      const auto& c = quads[q];
+      was[q] = scaledJacobian(before[c[0]], before[c[1]], before[c[2]], before[c[3]]);
+    }
+    for (bool any = true; any;)
+    {
+      any = false;
+      for (std::size_t q = 0; q < quads.size(); ++q)
+      {
+        if (scaledJacobian(this->Draft.Mesh, static_cast<Index>(q)) <
+            std::min(was[q], GoodJacobian))
+        {
+          for (Index v : quads[q])
+          {
+            any = any || points[v] != before[v];
+            points[v] = before[v];
+          }
+        }
+      }
+    }
+  }
 
   /// Side of each quad, averaged over those around it.
   void measure()
@@ -123,22 +168,7 @@ private:
     {
       p[k] = this->Draft.Mesh.Points[q[k]];
     }
-    const Vec3 center = 0.25 * (p[0] + p[1] + p[2] + p[3]);
-    const Vec3 u = 0.5 * (p[1] + p[2] - p[0] - p[3]);
-    const Vec3 v = 0.5 * (p[2] + p[3] - p[0] - p[1]);
-    const Vec3 n = u.cross(v).normalized();
-    // The square that fits best: u and v turned back by 90 degrees agree on its axis.
-    const Vec3 axis = (u - n.cross(v)).normalized();
-    const Vec3 other = n.cross(axis);
-    if (!axis.allFinite() || !other.allFinite())
-    {
-      return p;
-    }
-    const double lu = 0.7 * std::abs(axis.dot(u)) + 0.3 * this->Side[quad];
-    const double lv = 0.7 * std::abs(other.dot(v)) + 0.3 * this->Side[quad];
-    const Vec3 a = 0.5 * lu * axis;
-    const Vec3 b = 0.5 * lv * other;
-    return {center - a - b, center + a - b, center + a + b, center - a + b};
+    return nearestRectangle(p, this->Side[quad]);
   }
 
   double worst(Index v) const
@@ -203,25 +233,109 @@ private:
 };
 } // namespace
 
-Status relaxLayout(
-  LayoutDraft& draft, const ReferenceSurface& reference, int iterations, Monitor& monitor)
+std::array<Vec3, 4> nearestRectangle(const std::array<Vec3, 4>& p, double side)
 {
-  Relaxer relaxer(draft, reference);
-  draft.project(reference);
+  const Vec3 center = 0.25 * (p[0] + p[1] + p[2] + p[3]);
+  const Vec3 u = 0.5 * (p[1] + p[2] - p[0] - p[3]);
+  const Vec3 v = 0.5 * (p[2] + p[3] - p[0] - p[1]);
+  const Vec3 n = u.cross(v).normalized();
+  // The square that fits best: u and v turned back by 90 degrees agree on its axis.
+  const Vec3 axis = (u - n.cross(v)).normalized();
+  const Vec3 other = n.cross(axis);
+  if (!axis.allFinite() || !other.allFinite())
+  {
+    return p;
+  }
+  const double share = side > 0.0 ? 0.3 : 0.0;
+  const double lu = (1.0 - share) * std::abs(axis.dot(u)) + share * side;
+  const double lv = (1.0 - share) * std::abs(other.dot(v)) + share * side;
+  const Vec3 a = 0.5 * lu * axis;
+  const Vec3 b = 0.5 * lv * other;
+  return {center - a - b, center + a - b, center + a + b, center - a + b};
+}
+
+void relaxPart(LayoutDraft& draft, const ReferenceSurface& reference,
+  const std::vector<Index>& points, int iterations)
+{
+  std::vector<std::uint8_t> moving(draft.Mesh.Points.size(), 0);
+  for (Index v : points)
+  {
+    moving[v] = draft.Kind[v] != VertexKind::Fixed;
+  }
+  std::vector<Index> quads;
+  for (std::size_t q = 0; q < draft.Mesh.Quads.size(); ++q)
+  {
+    const auto& c = draft.Mesh.Quads[q];
+    if (std::any_of(c.begin(), c.end(), [&](Index v) { return moving[v] != 0; }))
+    {
+      quads.push_back(static_cast<Index>(q));
+    }
+  }
+  auto& p = draft.Mesh.Points;
   for (int i = 0; i < iterations; ++i)
   {
-    relaxer.relaxOnce(0.7);
-    if (monitor.cancelled())
+    std::vector<Vec3> sum(p.size(), Vec3::Zero());
+    std::vector<double> weight(p.size(), 0.0);
+    for (Index q : quads)
     {
-      return Status::cancelled();
+      const auto& c = draft.Mesh.Quads[q];
+      const auto asked = nearestRectangle({p[c[0]], p[c[1]], p[c[2]], p[c[3]]}, -1.0);
+      for (int k = 0; k < 4; ++k)
+      {
+        sum[c[k]] += asked[k];
+        weight[c[k]] += 1.0;
+      }
     }
-    monitor.progress((i + 1.0) / iterations);
+    parallelFor(0, static_cast<std::int64_t>(points.size()), 32,
+      [&](std::int64_t first, std::int64_t last)
+      {
+        for (std::int64_t n = first; n < last; ++n)
+        {
+          const Index v = points[n];
+          if (moving[v] != 0 && weight[v] > 0.0)
+          {
+            const auto& tree =
+              draft.Kind[v] == VertexKind::Crease ? reference.Creases : reference.Faces;
+            p[v] = tree.nearest(0.3 * p[v] + 0.7 * sum[v] / weight[v]).Point;
+          }
+        }
+      });
   }
-  for (int i = 0; i < 30 && relaxer.mend() > 0; ++i)
+}
+
+Status relaxLayout(LayoutDraft& draft, const ReferenceSurface& reference, int iterations,
+  Monitor& monitor, int mending)
+{
+  const std::vector<Vec3> start = draft.Mesh.Points;
+  Relaxer relaxer(draft, reference);
+  const double before = relaxer.worst();
+  draft.project(reference);
+  // A second, guarded run where the free one folds what was not folded.
+  for (bool guarded : {false, true})
   {
-    if (monitor.cancelled())
+    if (guarded)
     {
-      return Status::cancelled();
+      draft.Mesh.Points = start;
+    }
+    for (int i = 0; i < iterations; ++i)
+    {
+      relaxer.relaxOnce(0.7, guarded);
+      if (monitor.cancelled())
+      {
+        return Status::cancelled();
+      }
+      monitor.progress((i + 1.0) / iterations);
+    }
+    for (int i = 0; i < mending && relaxer.mend() > 0; ++i)
+    {
+      if (monitor.cancelled())
+      {
+        return Status::cancelled();
+      }
+    }
+    if (before <= 0.0 || relaxer.worst() >= std::min(before, 0.5 * GoodJacobian))
+    {
+      break;
     }
   }
   return Status::ok();

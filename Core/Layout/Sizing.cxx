@@ -142,6 +142,21 @@ double Sizing::side(const Vec3& p, double cell) const
   return this->sideIn(this->Tree.nearest(p).Triangle, cell);
 }
 
+Result<Sizing> Sizing::measured(TriangleSurface s, const ReferenceSurface& reference, int quads,
+  QuadSizing kind, const Sizing::Field& field, Monitor& monitor)
+{
+  // Bending shows on triangles of a fifth of a quad.
+  const double cell = std::sqrt(s.area() / quads);
+  SubMonitor quiet(monitor, 0.0, 0.0);
+  if (Status status = remesh(
+        s, reference, [&](const Vec3&) { return 0.2 * cell; }, 3, quiet);
+      !status)
+  {
+    return status;
+  }
+  return Sizing(s, cell, kind, field);
+}
+
 double Sizing::cellFor(double quads) const
 {
   double total = 0.0;

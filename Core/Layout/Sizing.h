@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Mesh/Remesh.h"
 #include "Mesh/TriangleSurface.h"
 #include "Mesh/TriangleTree.h"
 
@@ -30,6 +31,10 @@ public:
   /// \param field relative side at a place, above 0; used for QuadSizing::Array only
   Sizing(const TriangleSurface& s, double cell, QuadSizing kind = QuadSizing::Uniform,
     const Field& field = {});
+
+  /// Measures a surface for about so many quads.
+  static Result<Sizing> measured(TriangleSurface s, const ReferenceSurface& reference, int quads,
+    QuadSizing kind, const Field& field, Monitor& monitor);
 
   /// Side of quads at p where quads in flat places have side `cell`.
   double side(const Vec3& p, double cell) const;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <map>
 
 namespace
 {
@@ -222,6 +223,88 @@ TEST(QuadRemesh, SizeFieldMustFitTheMesh)
   options.SizeField.assign(200, 1.0);
   options.SizeField[5] = 0.0;
   EXPECT_EQ(failure(ring(20, 10, true), options).code(), StatusCode::InvalidParameter);
+}
+
+TEST(QuadRemesh, RegionsOfAnyShapeKeepTheirBorders)
+{
+  // A sleeve around the tube of a torus, between u = 0 and u = 90 degrees: not a disc.
+  TriangleMesh mesh = ring(160, 60, true);
+  for (std::size_t t = 0; t < mesh.Triangles.size(); ++t)
+  {
+    mesh.Region.push_back(t < mesh.Triangles.size() / 4 ? 1 : 0);
+  }
+  const QuadLayout layout = remeshed(mesh, 400);
+  expectSound(layout, 0, 0);
+  std::map<std::pair<Index, Index>, std::vector<Index>> regionsAt;
+  for (std::size_t q = 0; q < layout.Mesh.Quads.size(); ++q)
+  {
+    const auto& c = layout.Mesh.Quads[q];
+    for (int k = 0; k < 4; ++k)
+    {
+      regionsAt[std::minmax(c[k], c[(k + 1) % 4])].push_back(layout.Mesh.Region[q]);
+    }
+  }
+  int border = 0;
+  for (const auto& [edge, regions] : regionsAt)
+  {
+    if (regions[0] != regions[1])
+    {
+      ++border;
+      for (Index v : {edge.first, edge.second})
+      {
+        const Vec3& p = layout.Mesh.Points[v];
+        EXPECT_LT(std::min(std::abs(p.x()), std::abs(p.y())), 0.02);
+      }
+    }
+  }
+  EXPECT_GE(border, 8);
+}
+
+TEST(QuadRemesh, SpecksGetSixQuads)
+{
+  TriangleMesh mesh;
+  for (int k = 0; k < 40; ++k)
+  {
+    const auto base = static_cast<Index>(mesh.Points.size());
+    const TriangleMesh tube = cappedTube(6, 8, false);
+    for (const Vec3& p : tube.Points)
+    {
+      mesh.Points.emplace_back(p + Vec3(5.0 * k, 0, 0));
+    }
+    for (const auto& t : tube.Triangles)
+    {
+      mesh.Triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+    }
+  }
+  const QuadLayout layout = remeshed(mesh, 50);
+  expectSound(layout, 80, 0);
+  EXPECT_EQ(layout.Mesh.Quads.size(), 240U);
+}
+
+TEST(QuadRemesh, FewQuadsAreMetToo)
+{
+  for (int quads : {24, 50})
+  {
+    const QuadLayout layout = remeshed(cappedTube(80, 60, false), quads);
+    expectSound(layout, 2, 0);
+    EXPECT_NEAR(layout.Mesh.Quads.size(), quads, 0.1 * quads + 0.5);
+  }
+}
+
+TEST(QuadRemesh, FitRelaxationHalvesTheDistance)
+{
+  QuadRemeshOptions options;
+  options.NumberOfQuads = 200;
+  Monitor monitor;
+  options.FitRelaxation = false;
+  auto on = quadRemesh(ring(160, 60, true), options, monitor);
+  options.FitRelaxation = true;
+  auto fitted = quadRemesh(ring(160, 60, true), options, monitor);
+  ASSERT_TRUE(on && fitted);
+  expectSound(*fitted, 0, 0);
+  EXPECT_EQ(fitted->Mesh.Quads, on->Mesh.Quads);
+  EXPECT_LT(fitted->Distance.Mean, 0.7 * on->Distance.Mean);
+  EXPECT_LT(fitted->Distance.Maximum, on->Distance.Maximum);
 }
 
 TEST(QuadRemesh, IsDeterministic)

@@ -1,0 +1,237 @@
+#include "Layout/FieldLayout.h"
+
+#include "Layout/Coarsen.h"
+#include "Layout/PairTriangles.h"
+#include "Layout/ParametrizedLayout.h"
+#include "Layout/RelaxLayout.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bsr
+{
+namespace
+{
+constexpr double PoorCost = 25.0; ///< of a layout: a finer map made coarser may do better
+constexpr double BadCost = 60.0;  ///< of a layout: paired triangles may do better
+constexpr int MostFine = 6000;    ///< quads of a map to be made coarser
+
+/// One component and what is wanted of it.
+struct Task
+{
+  const TriangleSurface& Surface;
+  const ReferenceSurface& Reference;
+  const Sizing& Size;
+  int Quads;
+  int Euler;
+  const FieldLayoutOptions& Options;
+};
+
+/// The best layout so far.
+struct Candidates
+{
+  LayoutDraft Draft;
+  double Cost = std::numeric_limits<double>::infinity();
+  LayoutStage Stage = LayoutStage::Parametrized;
+
+  /// Nothing yet, or folded quads or vertices of too many.
+  bool unsound() const
+  {
+    if (this->Draft.Mesh.Quads.empty())
+    {
+      return true;
+    }
+    const LayoutReport report = checkLayout(this->Draft.Mesh);
+    return report.Flipped > 0 || report.MaxValence > 8;
+  }
+
+  /// Keeps the draft if it is sound and better.
+  void offer(const Task& task, LayoutDraft draft, LayoutStage stage)
+  {
+    const LayoutReport report = checkLayout(draft.Mesh);
+    if (!report.Valid || report.Euler != task.Euler)
+    {
+      return;
+    }
+    const double cost = layoutCost(draft, report, task.Surface, task.Reference, task.Quads);
+    if (cost < this->Cost)
+    {
+      this->Draft = std::move(draft);
+      this->Cost = cost;
+      this->Stage = stage;
+    }
+  }
+};
+
+/// Takes a layout to the count wanted.
+Status coarsenTo(const Task& task, LayoutDraft& draft, Monitor& monitor)
+{
+  const double cell = task.Size.cellFor(task.Quads);
+  CoarsenOptions options;
+  options.Quads = task.Quads;
+  options.Side = [&](const Vec3& p) { return task.Size.side(p, cell); };
+  const auto samples = static_cast<std::size_t>(std::max(3000, 12 * task.Quads));
+  const std::vector<Vec3>& points = task.Surface.Points;
+  const std::size_t stride = std::max<std::size_t>(1, points.size() / samples);
+  for (std::size_t i = 0; i < points.size(); i += stride)
+  {
+    if (task.Surface.Virtual[i] == 0)
+    {
+      options.Samples.push_back(points[i]);
+    }
+  }
+  SubMonitor first(monitor, 0.0, 0.8);
+  if (Status s = coarsenLayout(draft, task.Reference, options, first); !s)
+  {
+    return s;
+  }
+  SubMonitor second(monitor, 0.8, 1.0);
+  return relaxLayout(draft, task.Reference, 40, second);
+}
+
+/// By the map of a finer layout, which has room for what is narrow, made coarser.
+Status coarsenedRoad(const Task& task, int fine, Candidates& best, Monitor& monitor)
+{
+  SubMonitor first(monitor, 0.0, 0.6);
+  auto sizing = Sizing::measured(
+    task.Surface, task.Reference, fine, task.Options.Kind, task.Options.Field, monitor);
+  if (!sizing)
+  {
+    return sizing.status();
+  }
+  auto draft =
+    parametrizedLayout(task.Surface, task.Reference, *sizing, fine, task.Options.Seed, first);
+  if (!draft)
+  {
+    return draft.status();
+  }
+  if (draft->Mesh.Quads.empty())
+  {
+    return Status::ok();
+  }
+  SubMonitor second(monitor, 0.6, 1.0);
+  if (Status s = coarsenTo(task, *draft, second); !s)
+  {
+    return s;
+  }
+  best.offer(task, std::move(*draft), LayoutStage::Coarsened);
+  return Status::ok();
+}
+
+/// By pairs of triangles, four quads each, made coarser: this works for any surface.
+Status pairedRoad(const Task& task, Candidates& best, Monitor& monitor)
+{
+  const int finer =
+    std::max(3 * task.Quads, std::min(1500, 12 * task.Quads)) - 10 * std::min(0, task.Euler);
+  SubMonitor first(monitor, 0.0, 0.3);
+  TriangleSurface fine = task.Surface;
+  auto sizing = Sizing::measured(
+    task.Surface, task.Reference, finer, task.Options.Kind, task.Options.Field, monitor);
+  if (!sizing)
+  {
+    return sizing.status();
+  }
+  const double cell = sizing->cellFor(finer);
+  const double edge = std::sqrt(8.0 / std::sqrt(3.0));
+  const auto length = [&](const Vec3& p) { return edge * sizing->side(p, cell); };
+  if (Status status = remesh(fine, task.Reference, length, 8, first); !status)
+  {
+    return status;
+  }
+  LayoutDraft draft = pairTriangles(fine);
+  SubMonitor second(monitor, 0.3, 1.0);
+  LayoutDraft coarse = draft;
+  if (Status s = coarsenTo(task, coarse, second); !s)
+  {
+    return s;
+  }
+  best.offer(task, std::move(coarse), LayoutStage::Paired);
+  if (best.unsound())
+  {
+    best.offer(task, std::move(draft), LayoutStage::Paired);
+  }
+  if (best.unsound())
+  {
+    // Three quads in the plane of each triangle: nothing can go wrong but the count.
+    best.offer(task, splitTriangles(task.Surface), LayoutStage::Paired);
+  }
+  return Status::ok();
+}
+
+/// By a map; a second layout is brought to the count if that misses.
+Status parametrizedRoad(const Task& task, Candidates& best, Monitor& monitor)
+{
+  SubMonitor first(monitor, 0.0, 0.9);
+  auto draft = parametrizedLayout(
+    task.Surface, task.Reference, task.Size, task.Quads, task.Options.Seed, first);
+  if (!draft || draft->Mesh.Quads.empty())
+  {
+    return draft.status();
+  }
+  const auto got = static_cast<double>(draft->Mesh.Quads.size());
+  if (std::abs(got - task.Quads) > 0.045 * task.Quads)
+  {
+    LayoutDraft counted = *draft;
+    SubMonitor second(monitor, 0.9, 1.0);
+    if (Status s = coarsenTo(task, counted, second); !s)
+    {
+      return s;
+    }
+    best.offer(task, std::move(counted), LayoutStage::Parametrized);
+  }
+  best.offer(task, std::move(*draft), LayoutStage::Parametrized);
+  return Status::ok();
+}
+
+/// The best of the roads; the later ones are taken where the first gave nothing good.
+Status bestLayout(const Task& task, Candidates& best, Monitor& monitor)
+{
+  // Many handles on few quads leave no room for a map.
+  if (-6 * task.Euler < task.Quads)
+  {
+    SubMonitor first(monitor, 0.0, 0.4);
+    if (Status s = parametrizedRoad(task, best, first); !s)
+    {
+      return s;
+    }
+  }
+  double done = 0.4;
+  for (int factor : {2, 4})
+  {
+    const int fine = factor * task.Quads;
+    if (best.Cost >= PoorCost && fine <= MostFine && -20 * task.Euler < fine)
+    {
+      SubMonitor finer(monitor, done, done + 0.2);
+      if (Status s = coarsenedRoad(task, fine, best, finer); !s)
+      {
+        return s;
+      }
+      done += 0.2;
+    }
+  }
+  if (best.Cost >= BadCost)
+  {
+    SubMonitor last(monitor, done, 1.0);
+    return pairedRoad(task, best, last);
+  }
+  return Status::ok();
+}
+
+} // namespace
+
+Result<FieldLayout> fieldLayout(const TriangleSurface& s, const ReferenceSurface& reference,
+  const Sizing& sizing, const FieldLayoutOptions& options, Monitor& monitor)
+{
+  const Task task{s, reference, sizing, options.Quads, s.eulerCharacteristic(), options};
+  Candidates best;
+  if (Status status = bestLayout(task, best, monitor); !status)
+  {
+    return status;
+  }
+  if (best.Draft.Mesh.Quads.empty())
+  {
+    return Status::failed("No valid layout was found; try another NumberOfQuads or Seed.");
+  }
+  return FieldLayout{std::move(best.Draft), best.Stage};
+}
+} // namespace bsr
