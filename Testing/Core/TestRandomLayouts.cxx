@@ -28,14 +28,22 @@ struct Outcome
   int Flipped = 0;
 };
 
-std::string topologyProblem(const bsrtest::RandomSurface& surface, const QuadMesh& mesh)
+/// Every component of the layout is one of the clean surface's, and those that are missing are
+/// reported as specks. (Dirt may add specks of its own.)
+std::string topologyProblem(const bsrtest::RandomSurface& surface, const QuadLayout& layout)
 {
   const PolygonTopology<3> wanted(surface.Clean.Triangles);
-  const PolygonTopology<4> got(mesh.Quads);
-  const bool includes = std::includes(got.Components.begin(), got.Components.end(),
-    wanted.Components.begin(), wanted.Components.end());
-  const bool same = got.Components.size() == wanted.Components.size();
-  if (!includes || (!same && surface.Kind != bsrtest::Dirt::SpecksFins))
+  const PolygonTopology<4> got(layout.Mesh.Quads);
+  const auto missing = static_cast<std::ptrdiff_t>(wanted.Components.size()) -
+                       static_cast<std::ptrdiff_t>(got.Components.size());
+  const bool dirty = surface.Kind == bsrtest::Dirt::SpecksFins;
+  const bool includes = missing >= 0
+                          ? std::includes(wanted.Components.begin(), wanted.Components.end(),
+                              got.Components.begin(), got.Components.end())
+                          : std::includes(got.Components.begin(), got.Components.end(),
+                              wanted.Components.begin(), wanted.Components.end());
+  if (!includes || (!dirty && missing != layout.Repairs.Specks) ||
+      (dirty && missing > layout.Repairs.Specks))
   {
     return "topology" + bsrtest::text(got.Components) + " for" + bsrtest::text(wanted.Components);
   }
@@ -60,7 +68,7 @@ Outcome outcomeOf(unsigned seed, int grid)
   o.Problem = bsrtest::layoutProblem(layout->Mesh);
   if (o.Problem.empty())
   {
-    o.Problem = topologyProblem(surface, layout->Mesh);
+    o.Problem = topologyProblem(surface, *layout);
   }
   const double quads = static_cast<double>(layout->Mesh.Quads.size());
   double area = 0.0;
