@@ -373,6 +373,7 @@ private:
       }
     }
     std::vector<double> level;
+    level.reserve(heights.size());
     for (auto& h : heights)
     {
       level.push_back(h.size() < SectorPoints ? std::nan("") : quantile(h, LevelQuantile));
@@ -392,6 +393,7 @@ private:
     for (const auto& loop : open->borderLoops())
     {
       std::vector<Index> vertices;
+      vertices.reserve(loop.size());
       for (const Index h : loop)
       {
         vertices.push_back(open->from(h));
