@@ -1,27 +1,21 @@
 #include "Adapters/BSRSplineAdapter.h"
+#include "CADFile.h"
 #include "CubeLayout.h"
 #include "FilterTesting.h"
 #include "SampleModels.h"
-#include "Spline/Volume.h"
 #include "vtkBSplineG1Fit.h"
 #include "vtkIGESWriter.h"
 #include "vtkSTEPWriter.h"
 
-#include <BRepCheck_Analyzer.hxx>
-#include <BRepGProp.hxx>
 #include <BRep_Tool.hxx>
-#include <GProp_GProps.hxx>
 #include <GeomConvert.hxx>
 #include <Geom_BSplineSurface.hxx>
 #include <IGESControl_Reader.hxx>
 #include <Interface_Static.hxx>
-#include <Message.hxx>
-#include <Message_Messenger.hxx>
 #include <STEPControl_Reader.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Shape.hxx>
-#include <TopoDS_Shell.hxx>
 
 #include <vtkErrorCode.h>
 #include <vtkFieldData.h>
@@ -35,8 +29,7 @@
 #include <sstream>
 
 using namespace bsr;
-using bsrtest::ErrorLog;
-namespace fs = std::filesystem;
+using namespace bsrtest;
 
 namespace
 {
@@ -49,68 +42,12 @@ vtkSmartPointer<vtkPolyData> surfaceOf(const SplineModel& m)
   return out;
 }
 
-/// A folder that vanishes with its files.
-class Folder
-{
-public:
-  Folder()
-  {
-    std::string name = (fs::temp_directory_path() / "bsrXXXXXX").string();
-    this->Path = mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(this->Path); }
-  std::string file(const std::string& name) const { return (this->Path / name).string(); }
-  std::size_t count() const
-  {
-    return static_cast<std::size_t>(
-      std::distance(fs::directory_iterator(this->Path), fs::directory_iterator()));
-  }
-
-private:
-  fs::path Path;
-};
-
 std::string contents(const std::string& name)
 {
   std::ifstream in(name);
   std::stringstream s;
   s << in.rdbuf();
   return s.str();
-}
-
-/// OpenCASCADE's readers print; keep the test's output clean.
-struct Quiet
-{
-  Message_SequenceOfPrinters Printers = Message::DefaultMessenger()->Printers();
-  Quiet() { Message::DefaultMessenger()->ChangePrinters().Clear(); }
-  ~Quiet() { Message::DefaultMessenger()->ChangePrinters() = this->Printers; }
-};
-
-template <class Reader>
-TopoDS_Shape readBack(const std::string& name)
-{
-  const Quiet quiet;
-  Reader reader;
-  EXPECT_EQ(reader.ReadFile(name.c_str()), IFSelect_RetDone);
-  reader.TransferRoots();
-  return reader.OneShape();
-}
-
-int countOf(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind)
-{
-  int n = 0;
-  for (TopExp_Explorer it(shape, kind); it.More(); it.Next())
-  {
-    ++n;
-  }
-  return n;
-}
-
-double volumeOf(const TopoDS_Shape& shape)
-{
-  GProp_GProps g;
-  BRepGProp::VolumeProperties(shape, g, 1e-9);
-  return g.Mass();
 }
 
 void writeStep(const SplineModel& m, const std::string& name)
@@ -122,23 +59,6 @@ void writeStep(const SplineModel& m, const std::string& name)
   writer->Write();
   EXPECT_TRUE(log.empty()) << log.text();
   EXPECT_EQ(writer->GetNumberOfFaces(), static_cast<int>(m.Patches.size()));
-}
-
-/// The file holds one valid closed solid of the model's faces and volume.
-void expectSolid(const SplineModel& m, const TopoDS_Shape& shape, int shells)
-{
-  ASSERT_FALSE(shape.IsNull());
-  EXPECT_EQ(countOf(shape, TopAbs_SOLID), 1);
-  EXPECT_EQ(countOf(shape, TopAbs_SHELL), shells);
-  EXPECT_EQ(countOf(shape, TopAbs_FACE), static_cast<int>(m.Patches.size()));
-  EXPECT_TRUE(BRepCheck_Analyzer(shape).IsValid());
-  for (TopExp_Explorer it(shape, TopAbs_SHELL); it.More(); it.Next())
-  {
-    EXPECT_TRUE(BRep_Tool::IsClosed(TopoDS::Shell(it.Current())));
-  }
-  const double volume = measureModel(m).Volume;
-  EXPECT_GT(volume, 0.0);
-  EXPECT_NEAR(volumeOf(shape), volume, 1e-6 * volume);
 }
 
 /// The weights of a patch relative to its largest, of all patches, sorted.
