@@ -6,7 +6,7 @@
 SCAN is any surface or set of points that ParaView reads (.vtp, .ply, .stl, .obj ...); without it a digital scan with a
 gap is made. Writes model.vtp, model.step, report.csv, scan.pvsm and a picture of every stage into the output folder, and
 prints a summary. Of points without triangles the surface is reconstructed first, inside the filter: normals by principal
-components, a signed distance, its zero set (vtkPCANormalEstimation, vtkSignedDistance, vtkExtractSurface).
+components, a signed distance, its zero set (SurfaceFromPoints).
 """
 import argparse
 import os

@@ -6,22 +6,16 @@
 #include "vtkFillHolesRBF.h"
 #include "vtkPartitionToQuads.h"
 #include "vtkQuadRemesh.h"
+#include "vtkSurfaceFromPoints.h"
 
 #include <vtkDataArray.h>
-#include <vtkExtractSurface.h>
 #include <vtkFieldData.h>
-#include <vtkIdList.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
-#include <vtkMath.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
-#include <vtkPCANormalEstimation.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
-#include <vtkPolyDataConnectivityFilter.h>
-#include <vtkSignedDistance.h>
-#include <vtkStaticPointLocator.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkTable.h>
 #include <vtkTriangleFilter.h>
@@ -34,79 +28,6 @@ vtkStandardNewMacro(vtkScanToNURBS);
 
 namespace
 {
-/// Median distance of points to their sixth neighbors, which stands for the spacing of samples.
-double spacingOf(vtkPolyData* points)
-{
-  vtkNew<vtkStaticPointLocator> locator;
-  locator->SetDataSet(points);
-  locator->BuildLocator();
-  std::vector<double> distances;
-  vtkNew<vtkIdList> near;
-  const vtkIdType n = points->GetNumberOfPoints();
-  const vtkIdType step = std::max<vtkIdType>(1, n / 2000);
-  for (vtkIdType i = 0; i < n; i += step)
-  {
-    double p[3];
-    double q[3];
-    points->GetPoint(i, p);
-    locator->FindClosestNPoints(7, p, near);
-    points->GetPoint(near->GetId(near->GetNumberOfIds() - 1), q);
-    distances.push_back(std::sqrt(vtkMath::Distance2BetweenPoints(p, q)));
-  }
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
-}
-
-/// A surface through points without triangles: normals by principal components, a signed distance,
-/// its zero set's largest component.
-class PointSurface
-{
-public:
-  PointSurface(vtkPolyData* points, int dimension)
-  {
-    double b[6];
-    points->GetBounds(b);
-    const double longest = std::max({b[1] - b[0], b[3] - b[2], b[5] - b[4]});
-    const double voxel =
-      dimension > 0 ? longest / dimension : std::max(0.7 * spacingOf(points), longest / 400.0);
-    const double radius = 3.5 * std::max(voxel, 0.7 * spacingOf(points));
-    int dims[3];
-    for (int a = 0; a < 3; ++a)
-    {
-      b[2 * a] -= radius + 2.0 * voxel;
-      b[2 * a + 1] += radius + 2.0 * voxel;
-      dims[a] = 1 + static_cast<int>(std::ceil((b[2 * a + 1] - b[2 * a]) / voxel));
-    }
-    this->Normals->SetInputData(points);
-    this->Normals->SetSampleSize(16);
-    this->Normals->SetNormalOrientationToGraphTraversal();
-    this->Distance->SetInputConnection(this->Normals->GetOutputPort());
-    this->Distance->SetDimensions(dims);
-    this->Distance->SetBounds(b);
-    this->Distance->SetRadius(radius);
-    this->Surface->SetInputConnection(this->Distance->GetOutputPort());
-    this->Surface->SetRadius(0.99 * radius);
-    this->Surface->HoleFillingOn();
-    this->Surface->ComputeNormalsOff();
-    this->Largest->SetInputConnection(this->Surface->GetOutputPort());
-    this->Largest->SetExtractionModeToLargestRegion();
-  }
-
-  bool run(bsr::StageRunner& stages)
-  {
-    return stages.run("Normals", this->Normals, 5.0) &&
-           stages.run("SignedDistance", this->Distance, 5.0) &&
-           stages.run("ExtractSurface", this->Surface, 5.0) &&
-           stages.run("LargestComponent", this->Largest, 1.0);
-  }
-
-  vtkNew<vtkPCANormalEstimation> Normals;
-  vtkNew<vtkSignedDistance> Distance;
-  vtkNew<vtkExtractSurface> Surface;
-  vtkNew<vtkPolyDataConnectivityFilter> Largest;
-};
-
 void copyFields(vtkDataObject* from, vtkFieldData* to, std::initializer_list<const char*> names)
 {
   for (const char* name : names)
@@ -185,20 +106,15 @@ int vtkScanToNURBS::RequestData(
   vtkNew<vtkTriangleFilter> triangles;
   if (cloud)
   {
-    vtkNew<vtkPolyData> bare;
-    bare->SetPoints(scan->GetPoints());
-    PointSurface surface(bare, this->ReconstructionDimension);
-    if (!surface.run(stages))
+    vtkNew<vtkSurfaceFromPoints> surface;
+    surface->SetInputData(scan);
+    surface->SetDimension(this->ReconstructionDimension);
+    if (!stages.run("SurfaceFromPoints", surface, 15.0))
     {
       return failed();
     }
-    if (surface.Largest->GetOutput()->GetNumberOfPolys() == 0)
-    {
-      return fail("No surface was found through the points; set ReconstructionDimension, or make "
-                  "triangles before this filter.");
-    }
-    points->ShallowCopy(surface.Normals->GetOutput());
-    fill->SetInputData(surface.Largest->GetOutput());
+    points->ShallowCopy(surface->GetOutput(vtkSurfaceFromPoints::POINTS));
+    fill->SetInputData(surface->GetOutput(vtkSurfaceFromPoints::SURFACE));
   }
   else
   {

@@ -5,9 +5,8 @@
  * The whole pipeline of Branch, Prieto and Boulanger, "Automatic Extraction of a Quadrilateral
  * Network of NURBS Patches from Range Data Using Evolutionary Strategies", in one filter, with the
  * settings that a person is likely to change. It runs, in this order: for data without triangles
- * vtkPCANormalEstimation, vtkSignedDistance and vtkExtractSurface; then vtkFillHolesRBF,
- * vtkQuadRemesh, vtkPartitionToQuads (Geodesic) and vtkBSplineG1Fit. Whoever needs a setting that
- * is not here builds the chain from these filters.
+ * vtkSurfaceFromPoints; then vtkFillHolesRBF, vtkQuadRemesh, vtkPartitionToQuads (Geodesic) and
+ * vtkBSplineG1Fit. Whoever needs a setting that is not here builds the chain from these filters.
  *
  * Input: a vtkPolyData of triangles; if it has none, its points are taken, and the surface of the
  * largest component of the reconstruction is what the layout is made on, while the model is fitted

@@ -1,6 +1,6 @@
 #include "Spline/PointSelection.h"
 
-#include "Spline/PointTree.h"
+#include "Mesh/PointTree.h"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Spline/FitPoints.h"
-#include "Spline/PointTree.h"
+#include "Mesh/PointTree.h"
 
 namespace bsr
 {

@@ -37,6 +37,13 @@ public:
     return static_cast<Index>(static_cast<Index>(index[0]) == i ? index[1] : index[0]);
   }
 
+  /// The `count` nearest points (or all there are), nearest first, with their squared distances.
+  std::size_t nearest(
+    const Vec3& p, std::size_t count, std::uint32_t* indices, double* distances2) const
+  {
+    return this->Tree.knnSearch(p.data(), count, indices, distances2);
+  }
+
 private:
   struct Points3
   {
