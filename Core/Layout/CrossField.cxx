@@ -19,11 +19,12 @@ using ComplexMatrix = Eigen::SparseMatrix<Complex>;
 class FieldSolver
 {
 public:
-  FieldSolver(
-    const TriangleSurface& s, std::vector<std::uint8_t> inside, const CrossFieldOptions& options)
+  FieldSolver(const TriangleSurface& s, std::vector<std::uint8_t> inside,
+    const CrossFieldOptions& options, Monitor& monitor)
       : S(s),
         Inside(std::move(inside)),
         Options(options),
+        M(monitor),
         Row(s.Region.size(), -1),
         EdgeAngle(s.Vertex.size(), 0.0)
   {
@@ -43,7 +44,10 @@ public:
   CrossField run()
   {
     this->bendings();
-    this->targets();
+    if (!this->M.cancelled())
+    {
+      this->targets();
+    }
     CrossField field{this->Inside, {}};
     ComplexVector z;
     if (!this->solve(z))
@@ -180,6 +184,7 @@ private:
   ComplexMatrix laplacian() const
   {
     std::vector<Eigen::Triplet<Complex>> entries;
+    entries.reserve(6 * static_cast<std::size_t>(this->Rows));
     for (Index h = 0; h < static_cast<Index>(this->S.Vertex.size()); ++h)
     {
       if (this->inner(h))
@@ -195,8 +200,13 @@ private:
     return m;
   }
 
+  /// False: cancelled, or no solution. One factorization is the longest step.
   bool solve(ComplexVector& z) const
   {
+    if (this->M.cancelled())
+    {
+      return false;
+    }
     const ComplexMatrix smooth = this->laplacian();
     ComplexMatrix attach(this->Rows, this->Rows);
     attach.setIdentity();
@@ -207,10 +217,16 @@ private:
     ComplexMatrix identity(this->Rows, this->Rows);
     identity.setIdentity();
     const ComplexVector pull = this->Weight.cast<Complex>().cwiseProduct(this->Target);
-    Eigen::SimplicialLDLT<ComplexMatrix> solver;
     // Inverse power steps towards the smoothest field, pulled by the targets.
-    solver.compute(smooth + attach + 1e-4 * identity);
-    if (solver.info() != Eigen::Success)
+    const ComplexMatrix held = smooth + attach;
+    Eigen::SimplicialLDLT<ComplexMatrix> solver;
+    const auto factor = [&](const ComplexMatrix& m)
+    {
+      solver.factorize(m);
+      return solver.info() == Eigen::Success && !this->M.cancelled();
+    };
+    solver.analyzePattern(held + identity);
+    if (this->M.cancelled() || !factor(held + 1e-4 * identity))
     {
       return false;
     }
@@ -230,8 +246,7 @@ private:
     double tau = 30.0;
     for (int stage = 0; stage < 3; ++stage, tau *= 0.4)
     {
-      solver.compute(tau * (smooth + attach) + identity);
-      if (solver.info() != Eigen::Success)
+      if (this->M.cancelled() || !factor(tau * held + identity))
       {
         return false;
       }
@@ -240,6 +255,10 @@ private:
         const ComplexVector right = tau * pull + z;
         z = solver.solve(right);
         normalize(z);
+        if (this->M.cancelled())
+        {
+          return false;
+        }
       }
     }
     return z.allFinite();
@@ -257,6 +276,7 @@ private:
   const TriangleSurface& S;
   std::vector<std::uint8_t> Inside;
   CrossFieldOptions Options;
+  Monitor& M;
   std::vector<Index> Row;
   std::vector<double> EdgeAngle;
   Index Rows = 0;
@@ -273,9 +293,9 @@ double edgeAngle(const TriangleSurface& s, Index h)
   return std::atan2(e.dot(frame.Y), e.dot(frame.X));
 }
 
-CrossField crossField(
-  const TriangleSurface& s, std::vector<std::uint8_t> inside, const CrossFieldOptions& options)
+CrossField crossField(const TriangleSurface& s, std::vector<std::uint8_t> inside,
+  const CrossFieldOptions& options, Monitor& monitor)
 {
-  return FieldSolver(s, std::move(inside), options).run();
+  return FieldSolver(s, std::move(inside), options, monitor).run();
 }
 } // namespace bsr

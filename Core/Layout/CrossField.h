@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Common/Monitor.h"
 #include "Mesh/TriangleSurface.h"
 
 namespace bsr
@@ -29,8 +30,8 @@ struct CrossFieldOptions
  * principal curvature directions where they are distinct: diffusion with normalization
  * (Viertel and Osting 2019) of the complex fourth power (Knoeppel et al. 2013), started from the
  * globally optimal solution of one linear system. `s` should have triangles of even size.
- * Empty angles: the solver failed.
+ * Empty angles: the solver failed or was cancelled.
  */
-CrossField crossField(
-  const TriangleSurface& s, std::vector<std::uint8_t> inside, const CrossFieldOptions& options);
+CrossField crossField(const TriangleSurface& s, std::vector<std::uint8_t> inside,
+  const CrossFieldOptions& options, Monitor& monitor);
 } // namespace bsr

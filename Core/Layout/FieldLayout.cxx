@@ -24,6 +24,7 @@ struct Task
   const Sizing& Size;
   int Quads;
   int Euler;
+  int Loops; ///< of the boundary
   const FieldLayoutOptions& Options;
 };
 
@@ -49,7 +50,8 @@ struct Candidates
   void offer(const Task& task, LayoutDraft draft, LayoutStage stage)
   {
     const LayoutReport report = checkLayout(draft.Mesh);
-    if (!report.Valid || report.Euler != task.Euler)
+    if (!report.Valid || report.Euler != task.Euler || report.BoundaryLoops != task.Loops ||
+        report.Components != 1)
     {
       return;
     }
@@ -150,12 +152,13 @@ Status pairedRoad(const Task& task, Candidates& best, Monitor& monitor)
   {
     best.offer(task, std::move(draft), LayoutStage::Paired);
   }
-  if (best.unsound())
-  {
-    // Three quads in the plane of each triangle: nothing can go wrong but the count.
-    best.offer(task, splitTriangles(task.Surface), LayoutStage::Paired);
-  }
   return Status::ok();
+}
+
+/// Takes what a road found; a road that fails leaves it to the others. False: cancelled.
+bool goesOn(const Status& status)
+{
+  return status.code() != StatusCode::Cancelled;
 }
 
 /// By a map; a second layout is brought to the count if that misses.
@@ -184,15 +187,16 @@ Status parametrizedRoad(const Task& task, Candidates& best, Monitor& monitor)
 }
 
 /// The best of the roads; the later ones are taken where the first gave nothing good.
-Status bestLayout(const Task& task, Candidates& best, Monitor& monitor)
+/// False: cancelled.
+bool bestLayout(const Task& task, Candidates& best, Monitor& monitor)
 {
   // Many handles on few quads leave no room for a map.
   if (-6 * task.Euler < task.Quads)
   {
     SubMonitor first(monitor, 0.0, 0.4);
-    if (Status s = parametrizedRoad(task, best, first); !s)
+    if (!goesOn(parametrizedRoad(task, best, first)))
     {
-      return s;
+      return false;
     }
   }
   double done = 0.4;
@@ -202,9 +206,9 @@ Status bestLayout(const Task& task, Candidates& best, Monitor& monitor)
     if (best.Cost >= PoorCost && fine <= MostFine && -20 * task.Euler < fine)
     {
       SubMonitor finer(monitor, done, done + 0.2);
-      if (Status s = coarsenedRoad(task, fine, best, finer); !s)
+      if (!goesOn(coarsenedRoad(task, fine, best, finer)))
       {
-        return s;
+        return false;
       }
       done += 0.2;
     }
@@ -212,9 +216,17 @@ Status bestLayout(const Task& task, Candidates& best, Monitor& monitor)
   if (best.Cost >= BadCost)
   {
     SubMonitor last(monitor, done, 1.0);
-    return pairedRoad(task, best, last);
+    if (!goesOn(pairedRoad(task, best, last)))
+    {
+      return false;
+    }
   }
-  return Status::ok();
+  if (best.unsound())
+  {
+    // Three quads in the plane of each triangle: nothing can go wrong but the count.
+    best.offer(task, splitTriangles(task.Surface), LayoutStage::Paired);
+  }
+  return true;
 }
 
 } // namespace
@@ -222,11 +234,12 @@ Status bestLayout(const Task& task, Candidates& best, Monitor& monitor)
 Result<FieldLayout> fieldLayout(const TriangleSurface& s, const ReferenceSurface& reference,
   const Sizing& sizing, const FieldLayoutOptions& options, Monitor& monitor)
 {
-  const Task task{s, reference, sizing, options.Quads, s.eulerCharacteristic(), options};
+  const auto loops = static_cast<int>(std::count(s.Virtual.begin(), s.Virtual.end(), 1));
+  const Task task{s, reference, sizing, options.Quads, s.eulerCharacteristic(), loops, options};
   Candidates best;
-  if (Status status = bestLayout(task, best, monitor); !status)
+  if (!bestLayout(task, best, monitor))
   {
-    return status;
+    return Status::cancelled();
   }
   if (best.Draft.Mesh.Quads.empty())
   {

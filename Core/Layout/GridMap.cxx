@@ -23,8 +23,8 @@ constexpr int StiffeningPasses = 2;
 using Combination = std::vector<std::pair<Index, double>>;
 
 /// Columns of L^-1 P B for sparse B: only the paths to the root of the elimination tree are
-/// touched.
-Sparse forwardSolved(const Factors& factors, const Sparse& b)
+/// touched. Incomplete once cancelled.
+Sparse forwardSolved(const Factors& factors, const Sparse& b, Monitor& monitor)
 {
   const auto& lower = factors.matrixL().nestedExpression();
   const auto n = static_cast<Index>(lower.cols());
@@ -39,7 +39,7 @@ Sparse forwardSolved(const Factors& factors, const Sparse& b)
   }
   const auto& permute = factors.permutationP().indices();
   std::vector<std::vector<std::pair<Index, double>>> columns(b.cols());
-  parallelFor(0, b.cols(), 8,
+  parallelForUntilCancelled(0, b.cols(), 8, monitor,
     [&](std::int64_t first, std::int64_t last)
     {
       std::vector<double> x(n, 0.0);
@@ -89,22 +89,22 @@ Sparse forwardSolved(const Factors& factors, const Sparse& b)
 class GridSolver
 {
 public:
-  GridSolver(const TriangleSurface& s, const GridTopology& topology)
-      : S(s), Topology(topology), Stiffness(s.Region.size(), 1.0)
+  GridSolver(const TriangleSurface& s, const GridTopology& topology, Monitor& monitor)
+      : S(s), Topology(topology), M(monitor), Stiffness(s.Region.size(), 1.0)
   {
-    if (!topology.Usable || topology.Kernel.freeVariables() > MostIntegers)
+    if (monitor.cancelled() || !topology.Usable || topology.Kernel.freeVariables() > MostIntegers)
     {
       return;
     }
     this->number();
     this->cacheCombinations();
-    this->Usable = this->factor(this->Base) && this->reduce();
+    this->Usable = this->factor(this->Base, this->BaseKnown) && this->reduce();
   }
 
   template <class Offer>
   void run(const std::vector<double>& cells, const Offer& offer)
   {
-    if (!this->Usable)
+    if (!this->Usable || this->M.cancelled())
     {
       return;
     }
@@ -114,7 +114,10 @@ public:
     this->wish();
     this->Pull = this->By - this->Reduced.transpose() *
                               (this->BaseInverse.asDiagonal() * this->forward(this->Br));
-    this->round();
+    if (!this->round())
+    {
+      return;
+    }
     std::vector<std::int64_t> integers(static_cast<std::size_t>(ny));
     for (Index i = 0; i < ny; ++i)
     {
@@ -134,7 +137,7 @@ public:
       this->evaluate(x, uv);
       const int folded = this->stiffen(uv);
       if (offer(std::move(uv), integers, folded) || folded == 0 || pass + 1 == StiffeningPasses ||
-          !this->factor(this->Stiff))
+          !this->factor(this->Stiff, this->StiffKnown))
       {
         return;
       }
@@ -217,8 +220,9 @@ private:
     return twice;
   }
 
-  /// Writes down and factors the quadratic part of the energy.
-  bool factor(Factors& factors)
+  /// Writes down and factors the quadratic part of the energy; `known`: its pattern is. False:
+  /// cancelled or singular.
+  bool factor(Factors& factors, bool& known)
   {
     const Index ny = this->Topology.Kernel.freeVariables();
     std::vector<Eigen::Triplet<double>> rr;
@@ -239,8 +243,21 @@ private:
     h.setFromTriplets(rr.begin(), rr.end());
     this->Hry.resize(this->Reals, ny);
     this->Hry.setFromTriplets(ry.begin(), ry.end());
-    factors.compute(h);
-    return factors.info() == Eigen::Success;
+    if (this->M.cancelled())
+    {
+      return false;
+    }
+    if (!known)
+    {
+      factors.analyzePattern(h);
+      known = true;
+      if (this->M.cancelled())
+      {
+        return false;
+      }
+    }
+    factors.factorize(h);
+    return factors.info() == Eigen::Success && !this->M.cancelled();
   }
 
   template <class List>
@@ -323,15 +340,20 @@ private:
   bool reduce()
   {
     this->BaseMixed = this->Hry;
-    this->Reduced = forwardSolved(this->Base, this->Hry);
+    this->Reduced = forwardSolved(this->Base, this->Hry, this->M);
     this->BaseInverse = this->Base.vectorD().cwiseInverse();
     const Sparse scaled = this->BaseInverse.asDiagonal() * this->Reduced;
+    if (this->M.cancelled())
+    {
+      return false;
+    }
     this->Schur = this->Hyy - Eigen::MatrixXd(Sparse(this->Reduced.transpose() * scaled));
-    return this->Schur.allFinite();
+    return this->Schur.allFinite() && !this->M.cancelled();
   }
 
   /// Fixes the whole unknowns: always the one whose rounding costs least, then single steps.
-  void round()
+  /// False: cancelled.
+  bool round()
   {
     const Eigen::Index n = this->Schur.rows();
     Eigen::MatrixXd regular = this->Schur;
@@ -342,6 +364,10 @@ private:
     std::vector<std::uint8_t> fixed(n, 0);
     for (Eigen::Index step = 0; step < n; ++step)
     {
+      if (step % 8 == 0 && this->M.cancelled())
+      {
+        return false;
+      }
       Eigen::Index best = -1;
       double least = 0.0;
       for (Eigen::Index i = 0; i < n; ++i)
@@ -364,6 +390,7 @@ private:
     }
     this->Y = this->Y.array().round();
     this->improve();
+    return !this->M.cancelled();
   }
 
   void improve()
@@ -437,6 +464,7 @@ private:
 
   const TriangleSurface& S;
   const GridTopology& Topology;
+  Monitor& M;
   const std::vector<double>* Cells = nullptr;
   std::vector<double> Stiffness;
   std::vector<Index> Real;
@@ -455,6 +483,8 @@ private:
   Eigen::VectorXd Y;
   Factors Base;
   Factors Stiff;
+  bool BaseKnown = false;
+  bool StiffKnown = false;
 };
 } // namespace
 
@@ -464,8 +494,8 @@ struct GridMapper::Solver
   GridSolver Grid;
   GridMap Map;
 
-  Solver(const TriangleSurface& s, const CrossField& field)
-      : Topology(gridTopology(s, field)), Grid(s, this->Topology)
+  Solver(const TriangleSurface& s, const CrossField& field, Monitor& monitor)
+      : Topology(gridTopology(s, field)), Grid(s, this->Topology, monitor)
   {
     this->Map.Surface = s;
     this->Map.Inside = field.Inside;
@@ -473,11 +503,11 @@ struct GridMapper::Solver
   }
 };
 
-GridMapper::GridMapper(const TriangleSurface& s, const CrossField& field)
+GridMapper::GridMapper(const TriangleSurface& s, const CrossField& field, Monitor& monitor)
 {
   if (!field.Angle.empty())
   {
-    this->Impl = std::make_unique<Solver>(s, field);
+    this->Impl = std::make_unique<Solver>(s, field, monitor);
   }
 }
 

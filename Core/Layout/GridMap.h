@@ -53,8 +53,8 @@ struct GridMap
 class GridMapper
 {
 public:
-  /// \pre `s` and `field` outlive the mapper.
-  GridMapper(const TriangleSurface& s, const CrossField& field);
+  /// \pre `s`, `field` and `monitor` outlive the mapper. Once cancelled, it gives no maps.
+  GridMapper(const TriangleSurface& s, const CrossField& field, Monitor& monitor);
   ~GridMapper();
   GridMapper(const GridMapper&) = delete;
   GridMapper& operator=(const GridMapper&) = delete;

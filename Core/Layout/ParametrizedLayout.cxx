@@ -156,8 +156,9 @@ Result<LayoutDraft> parametrizedLayout(const TriangleSurface& s, const Reference
     CrossFieldOptions options;
     options.Size = cell0;
     options.Curvature = curvature[(i + static_cast<std::size_t>(std::abs(seed))) % 3];
-    const CrossField field = crossField(fine, inside, options);
-    GridMapper mapper(fine, field);
+    QuietMonitor quiet(monitor);
+    const CrossField field = crossField(fine, inside, options, quiet);
+    GridMapper mapper(fine, field, quiet);
     double cell = cell0;
     for (int attempt = 0; attempt < 3; ++attempt)
     {
@@ -176,7 +177,6 @@ Result<LayoutDraft> parametrizedLayout(const TriangleSurface& s, const Reference
         cell *= 0.93;
         continue;
       }
-      QuietMonitor quiet(monitor);
       if (Status status = relaxLayout(draft, reference, 40, quiet); !status)
       {
         return status;

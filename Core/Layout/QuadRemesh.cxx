@@ -224,9 +224,15 @@ Result<FieldLayout> layOut(TriangleSurface& s, const ReferenceSurface& reference
   SubMonitor fitting(monitor, 0.9, 1.0);
   if (found && options.FitRelaxation)
   {
+    const LayoutDraft before = found->Draft;
     if (Status status = fitLayout(found->Draft, s, fitting); !status)
     {
       return status;
+    }
+    const LayoutReport report = checkLayout(found->Draft.Mesh);
+    if (!report.Valid || report.Flipped > checkLayout(before.Mesh).Flipped)
+    {
+      found->Draft = before;
     }
   }
   return found;
