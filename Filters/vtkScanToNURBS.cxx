@@ -8,16 +8,21 @@
 #include "vtkQuadRemesh.h"
 #include "vtkSurfaceFromPoints.h"
 
+#include <vtkCell.h>
+#include <vtkCleanPolyData.h>
 #include <vtkDataArray.h>
 #include <vtkFieldData.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
+#include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
+#include <vtkPolyDataConnectivityFilter.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkTable.h>
+#include <vtkTriangle.h>
 #include <vtkTriangleFilter.h>
 
 #include <algorithm>
@@ -28,6 +33,57 @@ vtkStandardNewMacro(vtkScanToNURBS);
 
 namespace
 {
+constexpr double SmallestPart = 0.005; ///< of a scan's area
+
+/// The parts of a surface of at least SmallestPart of its area; the number of parts left out.
+int dropSpecks(vtkPolyData* surface, vtkPolyData* out)
+{
+  vtkNew<vtkPolyDataConnectivityFilter> parts;
+  parts->SetInputData(surface);
+  parts->SetExtractionModeToAllRegions();
+  parts->ColorRegionsOn();
+  parts->Update();
+  const int count = parts->GetNumberOfExtractedRegions();
+  out->ShallowCopy(surface);
+  if (count < 2)
+  {
+    return 0;
+  }
+  vtkPolyData* colored = parts->GetOutput();
+  vtkDataArray* part = colored->GetPointData()->GetArray("RegionId");
+  std::vector<double> area(static_cast<std::size_t>(count), 0.0);
+  double whole = 0.0;
+  for (vtkIdType c = 0; c < colored->GetNumberOfCells(); ++c)
+  {
+    auto* triangle = vtkTriangle::SafeDownCast(colored->GetCell(c));
+    const double size = triangle ? triangle->ComputeArea() : 0.0;
+    const vtkIdType corner = colored->GetCell(c)->GetPointId(0);
+    area[static_cast<std::size_t>(part->GetComponent(corner, 0))] += size;
+    whole += size;
+  }
+  parts->SetExtractionModeToSpecifiedRegions();
+  int dropped = count;
+  for (int r = 0; r < count; ++r)
+  {
+    if (area[static_cast<std::size_t>(r)] >= SmallestPart * whole)
+    {
+      parts->AddSpecifiedRegion(r);
+      --dropped;
+    }
+  }
+  vtkNew<vtkCleanPolyData> used;
+  used->SetInputConnection(parts->GetOutputPort());
+  used->PointMergingOff();
+  used->ConvertPolysToLinesOff(); // keeps triangles without area, which hold others together
+  used->Update();
+  if (dropped > 0 && used->GetOutput()->GetNumberOfPolys() > 0)
+  {
+    out->ShallowCopy(used->GetOutput());
+    out->GetPointData()->RemoveArray("RegionId");
+  }
+  return dropped;
+}
+
 void copyFields(vtkDataObject* from, vtkFieldData* to, std::initializer_list<const char*> names)
 {
   for (const char* name : names)
@@ -104,6 +160,7 @@ int vtkScanToNURBS::RequestData(
   const bool cloud = scan->GetNumberOfPolys() == 0 && scan->GetNumberOfStrips() == 0;
   vtkNew<vtkPolyData> points;
   vtkNew<vtkTriangleFilter> triangles;
+  int specks = 0;
   if (cloud)
   {
     vtkNew<vtkSurfaceFromPoints> surface;
@@ -125,7 +182,9 @@ int vtkScanToNURBS::RequestData(
     {
       return failed();
     }
-    fill->SetInputConnection(triangles->GetOutputPort());
+    vtkNew<vtkPolyData> whole;
+    specks = dropSpecks(triangles->GetOutput(), whole);
+    fill->SetInputData(whole);
   }
   if (!stages.run("FillHolesRBF", fill, 15.0))
   {
@@ -136,6 +195,7 @@ int vtkScanToNURBS::RequestData(
   remesh->SetInputConnection(fill->GetOutputPort());
   remesh->SetMethod(this->Method);
   remesh->SetNumberOfQuads(this->NumberOfQuads);
+  remesh->SetSizing(this->Sizing);
   remesh->SetFeatureAngle(this->FeatureAngle);
   if (!stages.run("QuadRemesh", remesh, 25.0))
   {
@@ -191,6 +251,7 @@ int vtkScanToNURBS::RequestData(
   copyFields(remesh->GetOutput(), report, {"Irregular", "EulerCharacteristic"});
   copyFields(
     partition->GetOutputDataObject(0), report, {"FailedQuads", "RoughSides", "FoldedTriangles"});
+  bsr::addField(report, "DroppedParts", specks);
   bsr::addField(report, "RelativeRMS", report->GetArray("RMS")->GetComponent(0, 0) / diagonal);
   bsr::addField(report, "RelativeMax", report->GetArray("Max")->GetComponent(0, 0) / diagonal);
   return 1;
@@ -205,6 +266,7 @@ void vtkScanToNURBS::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "Optimizer: " << this->Optimizer << "\n"
      << indent << "Tolerance: " << this->Tolerance << "\n"
      << indent << "SegmentsPerSide: " << this->SegmentsPerSide << "\n"
+     << indent << "Sizing: " << this->Sizing << "\n"
      << indent << "FeatureAngle: " << this->FeatureAngle << "\n"
      << indent << "Partition: " << this->Partition << "\n"
      << indent << "RobustWeights: " << this->RobustWeights << "\n"

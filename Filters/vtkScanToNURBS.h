@@ -8,6 +8,9 @@
  * vtkSurfaceFromPoints; then vtkFillHolesRBF, vtkQuadRemesh, vtkPartitionToQuads (Geodesic) and
  * vtkBSplineG1Fit. Whoever needs a setting that is not here builds the chain from these filters.
  *
+ * Connected parts of less than 0.5 % of the scan's area are left out as specks (`DroppedParts`);
+ * of several larger ones each becomes a closed or open shell of its own.
+ *
  * Input: a vtkPolyData of triangles; if it has none, its points are taken, and the surface of the
  * largest component of the reconstruction is what the layout is made on, while the model is fitted
  * to the points themselves. Output ports:
@@ -94,6 +97,12 @@ public:
   ///@}
 
   ///@{
+  /// How large quads are where, as in vtkQuadRemesh: 0 Uniform, 1 Curvature (default).
+  vtkSetClampMacro(Sizing, int, 0, 1);
+  vtkGetMacro(Sizing, int);
+  ///@}
+
+  ///@{
   /// Edges where the normals turn by more than this become sides of quads and stay
   /// sharp in the model; 180 (default): none.
   vtkSetMacro(FeatureAngle, double);
@@ -144,6 +153,7 @@ protected:
   int Optimizer = 0;
   double Tolerance = 0.0;
   int SegmentsPerSide = 3;
+  int Sizing = 1;
   double FeatureAngle = 180.0;
   int Partition = 1;
   bool RobustWeights = false;

@@ -7,6 +7,7 @@
 #include "Layout/SquareMap.h"
 #include "Mesh/BoundaryLoops.h"
 #include "Mesh/BuildSurface.h"
+#include "Mesh/RemoveSlivers.h"
 #include "Mesh/TriangleTree.h"
 
 #include <algorithm>
@@ -345,27 +346,35 @@ public:
   }
 
 private:
-  Status cut()
+  /// The mesh's components without slivers, on the side that the layout looks to.
+  Result<std::vector<TriangleSurface>> surfaces()
   {
     TriangleMesh mesh = this->Input;
     mesh.Region.clear();
     RepairReport repairs;
     auto surfaces = buildSurfaces(mesh, {}, repairs, this->Watch);
-    if (!surfaces)
-    {
-      return surfaces.status();
-    }
-    if (opposed(surfaces->front().toMesh(), this->Quads))
+    if (surfaces && opposed(surfaces->front().toMesh(), this->Quads))
     {
       for (auto& t : mesh.Triangles)
       {
         std::swap(t[1], t[2]);
       }
       surfaces = buildSurfaces(mesh, {}, repairs, this->Watch);
-      if (!surfaces)
-      {
-        return surfaces.status();
-      }
+    }
+    if (surfaces)
+    {
+      std::for_each(
+        surfaces->begin(), surfaces->end(), [](TriangleSurface& s) { removeSlivers(s); });
+    }
+    return surfaces;
+  }
+
+  Status cut()
+  {
+    auto surfaces = this->surfaces();
+    if (!surfaces)
+    {
+      return surfaces.status();
     }
     const auto base =
       CutMesh::build(*surfaces, this->Quads, this->Graph, EdgeShare * meanSide(this->Quads));

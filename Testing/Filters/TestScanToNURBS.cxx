@@ -1,6 +1,7 @@
 #include "FilterTesting.h"
 #include "vtkScanToNURBS.h"
 
+#include <vtkAppendPolyData.h>
 #include <vtkCellData.h>
 #include <vtkFeatureEdges.h>
 #include <vtkPointData.h>
@@ -92,6 +93,25 @@ TEST(ScanToNURBSFilter, TakesPointsWithoutTriangles)
   filter->Update();
   EXPECT_TRUE(log.empty()) << log.text();
   expectModel(filter, 2e-3, 2.0);
+}
+
+TEST(ScanToNURBSFilter, LeavesSpecksOut)
+{
+  vtkNew<vtkSphereSource> speck;
+  speck->SetCenter(3.0, 0.0, 0.0);
+  speck->SetRadius(0.02);
+  vtkNew<vtkAppendPolyData> both;
+  both->AddInputData(scan(0.0));
+  both->AddInputConnection(speck->GetOutputPort());
+  vtkNew<vtkScanToNURBS> filter;
+  filter->SetInputConnection(both->GetOutputPort());
+  filter->SetNumberOfQuads(30);
+  ErrorLog log(filter);
+  filter->Update();
+  EXPECT_TRUE(log.empty()) << log.text();
+  expectModel(filter, 1e-3, 2.0);
+  EXPECT_EQ(
+    bsrtest::fieldValue(filter->GetOutputDataObject(vtkScanToNURBS::REPORT), "DroppedParts"), 1.0);
 }
 
 TEST(ScanToNURBSFilter, BadInputGivesOneErrorAndNoOutput)
