@@ -395,6 +395,11 @@ private:
   /// The layout itself, or the outer shell moved inward, smoothed until nothing is wrong with it.
   Status findSafeShape()
   {
+    if (this->HasSafeShape)
+    {
+      return Status::ok();
+    }
+    this->HasSafeShape = true;
     double depth = std::max(this->Options.TypicalWall, 1.5 * this->Options.LeastWall);
     ShellFaults judge = *this->Judge;
     FitEquations e = this->Equations;
@@ -404,7 +409,7 @@ private:
     for (int round = 0; round < 6 && least > 0.0; ++round)
     {
       std::vector<FitPoint> targets = this->Options.RestShape
-                                        ? shapePoints(this->Net, *this->Options.RestShape, depth)
+                                        ? judge.pointsBelow(depth)
                                         : layoutPoints(this->Complex, *this->Vertices);
       const auto first = sortByPatch(targets, this->Net.patches());
       e.Data = dataBlocks(this->Net, targets, first);
@@ -508,6 +513,7 @@ private:
   double K = FirstDataWeight;
   double TotalWeight = 0.0;
   bool Repairing = false;
+  bool HasSafeShape = false; ///< the reference is it
   double PatchSize = 1.0;
 };
 } // namespace

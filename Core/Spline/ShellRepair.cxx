@@ -1,5 +1,6 @@
 #include "Spline/ShellRepair.h"
 
+#include "Common/Parallel.h"
 #include "Spline/FoldCheck.h"
 
 #include <algorithm>
@@ -84,23 +85,35 @@ std::vector<FitPoint> layoutPoints(const QuadComplex& complex, const std::vector
   return points;
 }
 
-std::vector<FitPoint> shapePoints(const PatchNet& net, const NetPoints& shell, double depth)
+std::vector<FitPoint> ShellFaults::pointsBelow(double depth) const
 {
-  const NetEvaluator surface(net, shell);
-  std::vector<FitPoint> points;
-  for (Index f = 0; f < net.patches(); ++f)
-  {
-    for (int k = 0; k < Grid * Grid; ++k)
+  constexpr int Steps = 48;
+  const NetEvaluator surface(*this->Net, *this->Outer);
+  std::vector<FitPoint> points(static_cast<std::size_t>(this->Net->patches()) * Grid * Grid);
+  parallelFor(0, static_cast<std::int64_t>(points.size()), 256,
+    [&](std::int64_t begin, std::int64_t end)
     {
-      FitPoint p;
-      p.Patch = f;
-      p.U = k % Grid / (Grid - 1.0);
-      p.V = k / Grid / (Grid - 1.0);
-      const PatchPoint s = surface.at(f, p.U, p.V);
-      p.Position = s.Point - depth * s.normal().normalized();
-      points.push_back(p);
-    }
-  }
+      for (std::int64_t i = begin; i < end; ++i)
+      {
+        const auto k = static_cast<int>(i % (Grid * Grid));
+        FitPoint& p = points[i];
+        p.Patch = static_cast<Index>(i / (Grid * Grid));
+        p.U = k % Grid / (Grid - 1.0);
+        p.V = k / Grid / (Grid - 1.0);
+        const PatchPoint s = surface.at(p.Patch, p.U, p.V);
+        p.Position = s.Point - 0.25 * depth * s.normal().normalized();
+        for (int n = 0; n < Steps; ++n)
+        {
+          const WallGauge::Wall wall = this->Gauge->at(p.Position);
+          const double missing = depth - wall.Thickness;
+          if (missing <= 0.02 * depth)
+          {
+            break;
+          }
+          p.Position -= std::min(missing, 0.25 * depth) * wall.Normal;
+        }
+      }
+    });
   return points;
 }
 

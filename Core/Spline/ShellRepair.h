@@ -21,6 +21,9 @@ public:
   void look(const NetPoints& surface);
   double score() const { return this->Score; }
   bool tooClose(const Vec3& place) const;
+  /// Points that left the outer shell, 7 x 7 a patch, along the gradient of the distance to it
+  /// until they were `depth` away: in narrow corners they move out along the middle.
+  std::vector<FitPoint> pointsBelow(double depth) const;
 
   int Folded = 0;
   std::vector<Index> BadPatches; ///< folded, nearly so, with a folded wall or too thin
@@ -38,9 +41,6 @@ private:
 
 /// Points of the layout's bilinear quads, 7 x 7 each.
 std::vector<FitPoint> layoutPoints(const QuadComplex& complex, const std::vector<Vec3>& vertices);
-
-/// Points below a shell, 7 x 7 a patch.
-std::vector<FitPoint> shapePoints(const PatchNet& net, const NetPoints& shell, double depth);
 
 /// Rim samples that hold a shell's border beside the given one: equal parameters along the rim.
 std::vector<RimSample> alignedRim(
