@@ -331,6 +331,31 @@ TEST(G1Fit, ShellsThatWouldCrossAreKeptApart)
   }
 }
 
+TEST(G1Fit, TheLumenLeavesNarrowEdges)
+{
+  // A lens of thickness 0.4 whose edge is sharper than its wall is thick.
+  QuadMesh m = meshes::sphere(2);
+  const auto onto = [](const Vec3& x, double size)
+  {
+    const Vec3 r = Vec3(x[0], x[1], x[2] / 0.2).normalized();
+    return Vec3(size * r[0], size * r[1], 0.2 * size * r[2]);
+  };
+  for (Vec3& x : m.Points)
+  {
+    x = Vec3(x[0], x[1], 0.2 * x[2]);
+  }
+  PartitionedPoints p = sample(
+    m, 8, [&](const Vec3& x) { return onto(x, 1.0); }, 0.0, 0);
+  // The lumen's points leave the lens at a third of its edge.
+  const auto inside = [&](const Vec3& x)
+  { return onto(x, x[0] > 0.3 && std::hypot(x[0], x[1]) > 0.8 ? 1.06 : 0.5); };
+  append(p, sample(m, 8, inside, 0.0, 1));
+  const G1FitResult r = fitted(p, m, {});
+  ASSERT_EQ(r.Shells.size(), 2u) << r.Message;
+  EXPECT_GT(r.MinimumWall, 0.0);
+  EXPECT_EQ(r.FoldedPatches, 0);
+}
+
 TEST(G1Fit, InnerPointsOutsideAreNoLumen)
 {
   const QuadMesh m = cappedTube(8);
