@@ -13,6 +13,7 @@ namespace bsr
 namespace
 {
 constexpr double PoorCost = 25.0; ///< of a layout: a finer map made coarser may do better
+constexpr double WeakCost = 40.0; ///< of a layout: a still finer map may do better
 constexpr double BadCost = 60.0;  ///< of a layout: paired triangles may do better
 constexpr int MostFine = 6000;    ///< quads of a map to be made coarser
 
@@ -34,6 +35,7 @@ struct Candidates
   LayoutDraft Draft;
   double Cost = std::numeric_limits<double>::infinity();
   LayoutStage Stage = LayoutStage::Parametrized;
+  bool NoMaps = false; ///< it is no use to try finer maps
 
   /// Nothing yet, or folded quads or vertices of too many.
   bool unsound() const
@@ -95,28 +97,23 @@ Status coarsenTo(const Task& task, LayoutDraft& draft, Monitor& monitor)
 Status coarsenedRoad(const Task& task, int fine, Candidates& best, Monitor& monitor)
 {
   SubMonitor first(monitor, 0.0, 0.6);
-  auto sizing = Sizing::measured(
-    task.Surface, task.Reference, fine, task.Options.Kind, task.Options.Field, monitor);
-  if (!sizing)
+  auto found = parametrizedLayout(
+    task.Surface, task.Reference, task.Size, {fine, task.Options.Seed, true}, first);
+  if (!found)
   {
-    return sizing.status();
+    return found.status();
   }
-  auto draft =
-    parametrizedLayout(task.Surface, task.Reference, *sizing, fine, task.Options.Seed, first);
-  if (!draft)
-  {
-    return draft.status();
-  }
-  if (draft->Mesh.Quads.empty())
+  best.NoMaps = found->Hopeless;
+  if (found->Draft.Mesh.Quads.empty())
   {
     return Status::ok();
   }
   SubMonitor second(monitor, 0.6, 1.0);
-  if (Status s = coarsenTo(task, *draft, second); !s)
+  if (Status s = coarsenTo(task, found->Draft, second); !s)
   {
     return s;
   }
-  best.offer(task, std::move(*draft), LayoutStage::Coarsened);
+  best.offer(task, std::move(found->Draft), LayoutStage::Coarsened);
   return Status::ok();
 }
 
@@ -165,16 +162,21 @@ bool goesOn(const Status& status)
 Status parametrizedRoad(const Task& task, Candidates& best, Monitor& monitor)
 {
   SubMonitor first(monitor, 0.0, 0.9);
-  auto draft = parametrizedLayout(
-    task.Surface, task.Reference, task.Size, task.Quads, task.Options.Seed, first);
-  if (!draft || draft->Mesh.Quads.empty())
+  auto found = parametrizedLayout(
+    task.Surface, task.Reference, task.Size, {task.Quads, task.Options.Seed, false}, first);
+  if (!found)
   {
-    return draft.status();
+    return found.status();
   }
-  const auto got = static_cast<double>(draft->Mesh.Quads.size());
+  best.NoMaps = found->Hopeless;
+  if (found->Draft.Mesh.Quads.empty())
+  {
+    return Status::ok();
+  }
+  const auto got = static_cast<double>(found->Draft.Mesh.Quads.size());
   if (std::abs(got - task.Quads) > 0.045 * task.Quads)
   {
-    LayoutDraft counted = *draft;
+    LayoutDraft counted = found->Draft;
     SubMonitor second(monitor, 0.9, 1.0);
     if (Status s = coarsenTo(task, counted, second); !s)
     {
@@ -182,7 +184,7 @@ Status parametrizedRoad(const Task& task, Candidates& best, Monitor& monitor)
     }
     best.offer(task, std::move(counted), LayoutStage::Parametrized);
   }
-  best.offer(task, std::move(*draft), LayoutStage::Parametrized);
+  best.offer(task, std::move(found->Draft), LayoutStage::Parametrized);
   return Status::ok();
 }
 
@@ -203,7 +205,8 @@ bool bestLayout(const Task& task, Candidates& best, Monitor& monitor)
   for (int factor : {2, 4})
   {
     const int fine = factor * task.Quads;
-    if (best.Cost >= PoorCost && fine <= MostFine && -20 * task.Euler < fine)
+    if (best.Cost >= (factor == 2 ? PoorCost : WeakCost) && !best.NoMaps && fine <= MostFine &&
+        -20 * task.Euler < fine)
     {
       SubMonitor finer(monitor, done, done + 0.2);
       if (!goesOn(coarsenedRoad(task, fine, best, finer)))

@@ -89,10 +89,12 @@ Sparse forwardSolved(const Factors& factors, const Sparse& b, Monitor& monitor)
 class GridSolver
 {
 public:
-  GridSolver(const TriangleSurface& s, const GridTopology& topology, Monitor& monitor)
+  GridSolver(
+    const TriangleSurface& s, const GridTopology& topology, int mostSingular, Monitor& monitor)
       : S(s), Topology(topology), M(monitor), Stiffness(s.Region.size(), 1.0)
   {
-    if (monitor.cancelled() || !topology.Usable || topology.Kernel.freeVariables() > MostIntegers)
+    if (monitor.cancelled() || !topology.Usable || topology.Singular > mostSingular ||
+        topology.Kernel.freeVariables() > MostIntegers)
     {
       return;
     }
@@ -494,8 +496,8 @@ struct GridMapper::Solver
   GridSolver Grid;
   GridMap Map;
 
-  Solver(const TriangleSurface& s, const CrossField& field, Monitor& monitor)
-      : Topology(gridTopology(s, field)), Grid(s, this->Topology, monitor)
+  Solver(const TriangleSurface& s, const CrossField& field, int mostSingular, Monitor& monitor)
+      : Topology(gridTopology(s, field)), Grid(s, this->Topology, mostSingular, monitor)
   {
     this->Map.Surface = s;
     this->Map.Inside = field.Inside;
@@ -503,15 +505,21 @@ struct GridMapper::Solver
   }
 };
 
-GridMapper::GridMapper(const TriangleSurface& s, const CrossField& field, Monitor& monitor)
+GridMapper::GridMapper(
+  const TriangleSurface& s, const CrossField& field, int mostSingular, Monitor& monitor)
 {
   if (!field.Angle.empty())
   {
-    this->Impl = std::make_unique<Solver>(s, field, monitor);
+    this->Impl = std::make_unique<Solver>(s, field, mostSingular, monitor);
   }
 }
 
 GridMapper::~GridMapper() = default;
+
+int GridMapper::singular() const
+{
+  return this->Impl ? this->Impl->Topology.Singular : 0;
+}
 
 void GridMapper::run(
   const std::vector<double>& cells, const std::function<bool(const GridMap&)>& accept)

@@ -53,8 +53,9 @@ struct GridMap
 class GridMapper
 {
 public:
-  /// \pre `s`, `field` and `monitor` outlive the mapper. Once cancelled, it gives no maps.
-  GridMapper(const TriangleSurface& s, const CrossField& field, Monitor& monitor);
+  /// Once cancelled, or for more than `mostSingular` singular vertices, it gives no maps.
+  /// \pre `s`, `field` and `monitor` outlive the mapper.
+  GridMapper(const TriangleSurface& s, const CrossField& field, int mostSingular, Monitor& monitor);
   ~GridMapper();
   GridMapper(const GridMapper&) = delete;
   GridMapper& operator=(const GridMapper&) = delete;
@@ -62,6 +63,8 @@ public:
   /// `cells` is the side of a cell wanted in each triangle. Each map on the way is offered to
   /// `accept`, which returns true if it is good enough; there may be none.
   void run(const std::vector<double>& cells, const std::function<bool(const GridMap&)>& accept);
+
+  int singular() const; ///< vertices
 
 private:
   struct Solver;

@@ -11,13 +11,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <queue>
 
 namespace bsr
 {
 namespace
 {
 constexpr double TrianglesPerQuad = 24.0;
-constexpr double GoodCost = 8.0; ///< no other field is tried then
+constexpr double FewerTriangles = 16.0; ///< a quad, of many to be made coarser
+constexpr double GoodCost = 8.0;        ///< no other field is tried then
+constexpr int MostCompared = 1500; ///< quads more, of a layout to be made coarser, are not compared
+constexpr int MostAttempts = 5;    ///< with each field
+constexpr int MostFailures = 6;    ///< before the first layout
+constexpr double Shrink = 0.6;     ///< of cells where a map folds
+constexpr double Around = 2.0;     ///< cells around a fold that shrink
+constexpr double Crowded = 0.4;    ///< singular vertices a quad that leave no room for a map
+constexpr double Hopeless = 0.08;  ///< share of triangles that fold: a finer map would, too
 
 /// Side of a grid cell wanted in each triangle.
 std::vector<double> cellsOf(const TriangleSurface& s, const Sizing& sizing, double cell)
@@ -101,16 +110,80 @@ LayoutDraft layoutOf(const GridMap& map, int euler)
   return report.Valid && report.Euler == euler && report.MaxValence <= 8 ? draft : LayoutDraft{};
 }
 
-LayoutDraft tryCells(GridMapper& mapper, const std::vector<double>& cells, int euler)
+/// A map's layout, if it has a valid one, and where the map is squeezed.
+struct Trial
 {
-  LayoutDraft draft;
+  LayoutDraft Draft;
+  std::vector<Index> Squeezed; ///< triangles turned over or nearly so
+};
+
+std::vector<Index> squeezed(const GridMap& map, const std::vector<double>& cells)
+{
+  const TriangleSurface& s = map.Surface;
+  std::vector<Index> bad;
+  for (Index f = 0; f < s.faces(); ++f)
+  {
+    const Vec2 a = map.UV[3 * f + 1] - map.UV[3 * f];
+    const Vec2 b = map.UV[3 * f + 2] - map.UV[3 * f];
+    const double wished = 2.0 * s.areaNormal(f).norm() / (cells[f] * cells[f]);
+    if (map.Inside[f] && a[0] * b[1] - a[1] * b[0] < 0.05 * wished)
+    {
+      bad.push_back(f);
+    }
+  }
+  return bad;
+}
+
+Trial tryCells(GridMapper& mapper, const std::vector<double>& cells, int euler)
+{
+  Trial trial;
   mapper.run(cells,
     [&](const GridMap& map)
     {
-      draft = layoutOf(map, euler);
-      return !draft.Mesh.Quads.empty();
+      trial.Squeezed = squeezed(map, cells);
+      trial.Draft = layoutOf(map, euler);
+      return !trial.Draft.Mesh.Quads.empty();
     });
-  return draft;
+  return trial;
+}
+
+/// Multiplies values of triangles by Shrink at the given ones, and less up to `reach` from them.
+void shrinkAround(const TriangleSurface& s, const std::vector<Index>& triangles, double reach,
+  std::vector<double>& values)
+{
+  const auto middle = [&](Index f)
+  {
+    const auto c = s.corners(f);
+    return Vec3((s.Points[c[0]] + s.Points[c[1]] + s.Points[c[2]]) / 3.0);
+  };
+  using Step = std::pair<double, Index>;
+  std::priority_queue<Step, std::vector<Step>, std::greater<>> queue;
+  std::vector<double> distance(values.size(), reach);
+  for (Index f : triangles)
+  {
+    distance[f] = 0.0;
+    queue.emplace(0.0, f);
+  }
+  while (!queue.empty())
+  {
+    const auto [d, f] = queue.top();
+    queue.pop();
+    if (d > distance[f])
+    {
+      continue;
+    }
+    values[f] *= Shrink + (1.0 - Shrink) * d / reach;
+    for (Index h = 3 * f; h < 3 * f + 3; ++h)
+    {
+      const Index g = s.Opposite[h] / 3;
+      const double there = s.hole(g) ? reach : d + (middle(f) - middle(g)).norm();
+      if (there < distance[g])
+      {
+        distance[g] = there;
+        queue.emplace(there, g);
+      }
+    }
+  }
 }
 } // namespace
 
@@ -127,13 +200,17 @@ double layoutCost(const LayoutDraft& draft, const LayoutReport& report, const Tr
          50.0 * report.Flipped + 5.0 * std::max(0, report.MaxValence - 6);
 }
 
-Result<LayoutDraft> parametrizedLayout(const TriangleSurface& s, const ReferenceSurface& reference,
-  const Sizing& sizing, int quads, int seed, Monitor& monitor)
+Result<ParametrizedLayout> parametrizedLayout(const TriangleSurface& s,
+  const ReferenceSurface& reference, const Sizing& sizing, const ParametrizedOptions& options,
+  Monitor& monitor)
 {
+  const int quads = options.Quads;
   const double cell0 = sizing.cellFor(quads);
   TriangleSurface fine = s;
   SubMonitor remeshing(monitor, 0.0, 0.3);
-  const double edge = std::sqrt(4.0 / std::sqrt(3.0) / TrianglesPerQuad);
+  const bool fewer = options.ToCoarsen && quads > MostCompared;
+  const double density = fewer ? FewerTriangles : TrianglesPerQuad;
+  const double edge = std::sqrt(4.0 / std::sqrt(3.0) / density);
   const auto length = [&](const Vec3& p) { return edge * sizing.side(p, cell0); };
   if (Status status = remesh(fine, reference, length, 5, remeshing); !status)
   {
@@ -146,49 +223,73 @@ Result<LayoutDraft> parametrizedLayout(const TriangleSurface& s, const Reference
     inside[f] = discs ? fine.Region[f] == 0 : fine.Region[f] != TriangleSurface::HoleRegion;
   }
   const int euler = s.eulerCharacteristic();
-  LayoutDraft best;
+  ParametrizedLayout best;
   double bestCost = std::numeric_limits<double>::infinity();
   int failed = 0;
   const std::array<double, 3> curvature = {1.0, 0.2, 5.0};
   for (std::size_t i = 0; i < curvature.size() && bestCost > GoodCost; ++i)
   {
     monitor.progress(0.3 + 0.7 * i / curvature.size());
-    CrossFieldOptions options;
-    options.Size = cell0;
-    options.Curvature = curvature[(i + static_cast<std::size_t>(std::abs(seed))) % 3];
+    CrossFieldOptions crosses;
+    crosses.Size = cell0;
+    crosses.Curvature = curvature[(i + static_cast<std::size_t>(std::abs(options.Seed))) % 3];
     QuietMonitor quiet(monitor);
-    const CrossField field = crossField(fine, inside, options, quiet);
-    GridMapper mapper(fine, field, quiet);
+    const CrossField field = crossField(fine, inside, crosses, quiet);
+    const int most = static_cast<int>(Crowded * quads) + 24;
+    GridMapper mapper(fine, field, most, quiet);
+    if (mapper.singular() > most)
+    {
+      continue;
+    }
     double cell = cell0;
-    for (int attempt = 0; attempt < 3; ++attempt)
+    std::vector<double> share(fine.Region.size(), 1.0); // of the cells, where they had to shrink
+    for (int attempt = 0; attempt < MostAttempts; ++attempt)
     {
       if (monitor.cancelled())
       {
         return Status::cancelled();
       }
-      LayoutDraft draft = tryCells(mapper, cellsOf(fine, sizing, cell), euler);
+      std::vector<double> cells = cellsOf(fine, sizing, cell);
+      std::transform(cells.begin(), cells.end(), share.begin(), cells.begin(), std::multiplies<>());
+      Trial trial = tryCells(mapper, cells, euler);
+      LayoutDraft& draft = trial.Draft;
       const auto got = static_cast<int>(draft.Mesh.Quads.size());
       if (got == 0)
       {
-        if (best.Mesh.Quads.empty() && ++failed > 3)
+        const auto folds = static_cast<double>(trial.Squeezed.size());
+        best.Hopeless =
+          best.Draft.Mesh.Quads.empty() && folds > Hopeless * static_cast<double>(fine.faces());
+        if (best.Draft.Mesh.Quads.empty() && (++failed > MostFailures || best.Hopeless))
         {
           return best; // there is no room for a map
         }
-        cell *= 0.93;
+        if (trial.Squeezed.empty())
+        {
+          cell *= 0.93;
+        }
+        else
+        {
+          shrinkAround(fine, trial.Squeezed, Around * cell, share);
+        }
         continue;
       }
       if (Status status = relaxLayout(draft, reference, 40, quiet); !status)
       {
         return status;
       }
+      if (options.ToCoarsen && quads > MostCompared)
+      {
+        best.Draft = std::move(draft);
+        return best;
+      }
       const LayoutReport report = checkLayout(draft.Mesh);
       const double cost = layoutCost(draft, report, s, reference, quads);
       if (cost < bestCost)
       {
         bestCost = cost;
-        best = std::move(draft);
+        best.Draft = std::move(draft);
       }
-      if (std::abs(got - quads) <= 0.05 * quads)
+      if (options.ToCoarsen || std::abs(got - quads) <= 0.05 * quads)
       {
         break;
       }

@@ -7,15 +7,29 @@
 
 namespace bsr
 {
+struct ParametrizedOptions
+{
+  int Quads = 500;
+  int Seed = 0;
+  bool ToCoarsen = false; ///< the count does not matter, nor, of many quads, the cost
+};
+
+struct ParametrizedLayout
+{
+  LayoutDraft Draft;     ///< no quads: none was found, and another road must be taken
+  bool Hopeless = false; ///< the maps fold in so many places that those of more quads will, too
+};
+
 /**
  * A layout of one component by an integer-grid map of a cross field. Where all regions other than 0
  * are discs, the map covers region 0 and ends along their borders, which are then capped; else it
- * covers all regions and follows their borders. Several
- * fields are tried; the best valid layout is relaxed and returned. No quads: none was found, and
- * another road must be taken (that is not an error).
+ * covers all regions and follows their borders. Where a map folds, there is no room for its cells:
+ * they shrink there, and the map is made again. Several fields are tried; the best valid layout is
+ * relaxed and returned. That there is none is not an error.
  */
-Result<LayoutDraft> parametrizedLayout(const TriangleSurface& s, const ReferenceSurface& reference,
-  const Sizing& sizing, int quads, int seed, Monitor& monitor);
+Result<ParametrizedLayout> parametrizedLayout(const TriangleSurface& s,
+  const ReferenceSurface& reference, const Sizing& sizing, const ParametrizedOptions& options,
+  Monitor& monitor);
 
 /// Small is good: angles, count, irregular vertices, bad quads, distance to the surface.
 double layoutCost(const LayoutDraft& draft, const LayoutReport& report, const TriangleSurface& s,
