@@ -1,6 +1,7 @@
 #include "Contour/BranchedSurface.h"
 
 #include "Common/Parallel.h"
+#include "Contour/RelaxFolds.h"
 #include "Contour/SurfaceReport.h"
 
 #include <algorithm>
@@ -28,6 +29,8 @@ Status checkOptions(const BranchedOptions& o)
 }
 
 constexpr std::size_t MaximumRefined = 600; ///< patches of a surface that is refined as a whole
+
+constexpr std::size_t Relaxed = 3; ///< surfaces of one network that are relaxed
 
 /// Shapes of the star about a crotch that are tried in turn where a patch folds.
 struct Trial
@@ -57,10 +60,10 @@ public:
     this->Choices.Caps.assign(net.Tubes.size(), {rows, rows});
   }
 
+  /// The first surface without a fold, after relaxation where need be; else the best one.
   Result<BranchedSurface> run(Monitor& monitor)
   {
-    BranchedSurface best;
-    double share = 0.0;
+    std::vector<BranchedSurface> tried;
     for (const Trial& trial : Trials)
     {
       if (monitor.cancelled())
@@ -71,23 +74,42 @@ public:
       rows.StarSize = trial.StarSize;
       rows.BendSpans = trial.BendSpans;
       rows.Follow = trial.Follow;
-      const bool first = best.Model.Patches.empty();
-      this->propose(rows, first);
-      BranchedSurface s = this->build();
-      this->judge(s, rows, first);
-      if (first || s.FoldedPatches < best.FoldedPatches)
+      this->propose(rows, tried.empty());
+      tried.push_back(this->build());
+      this->judge(tried.back(), rows, tried.size() == 1);
+      if (tried.back().FoldedPatches == 0)
       {
-        best = std::move(s);
+        return std::move(tried.back());
       }
-      if (best.FoldedPatches == 0)
-      {
-        return best;
-      }
-      monitor.progress(share += 0.09);
+      monitor.progress(0.05 * static_cast<double>(tried.size()));
     }
     this->propose(this->Rows, false, false); // the best of each
-    BranchedSurface s = this->build();
-    return s.FoldedPatches < best.FoldedPatches ? std::move(s) : std::move(best);
+    tried.push_back(this->build());
+    std::stable_sort(tried.begin(), tried.end(),
+      [](const auto& a, const auto& b) { return a.FoldedPatches < b.FoldedPatches; });
+    tried.resize(
+      std::min(tried.size(), tried[0].Model.Patches.size() > MaximumRefined ? 1 : Relaxed));
+    // As published the patches at a crotch are singular: nothing can be done about it.
+    const bool relax = this->Rows.Kind == JunctionKind::Superimposed ||
+                       this->Rows.Tangency == JunctionTangency::Space;
+    for (std::size_t k = 0; relax && k < tried.size() && tried[0].FoldedPatches > 0; ++k)
+    {
+      const double each = 0.45 / static_cast<double>(tried.size());
+      const double from = 0.55 + each * static_cast<double>(k);
+      SubMonitor part(monitor, from, from + each);
+      BranchedSurface& s = tried[k];
+      const auto left = relaxFolds(s.Model, s.Jacobians, this->Stack, part);
+      if (!left)
+      {
+        return left.status();
+      }
+      s.FoldedPatches = *left;
+      if (s.FoldedPatches < tried[0].FoldedPatches)
+      {
+        std::swap(tried[0], s);
+      }
+    }
+    return std::move(tried[0]);
   }
 
 private:

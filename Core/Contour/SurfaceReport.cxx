@@ -217,32 +217,44 @@ std::vector<SideJumps> normalJumps(const SplineModel& model, int samples)
   return jumps;
 }
 
+double patchJacobian(const SplineModel& model, std::int64_t patch)
+{
+  const SplinePatch& s = model.Patches[patch];
+  const auto d = patchDomain(model, s);
+  std::vector<BasisValues> basis[2];
+  for (int i = 0; i < Grid; ++i)
+  {
+    const double x = static_cast<double>(i) / (Grid - 1);
+    basis[0].push_back(evaluateBasis(
+      model.Knots.data() + s.FirstKnotU, s.DegreeU, s.CountU, d[0] + (d[1] - d[0]) * x));
+    basis[1].push_back(evaluateBasis(
+      model.Knots.data() + s.FirstKnotV, s.DegreeV, s.CountV, d[2] + (d[3] - d[2]) * x));
+  }
+  std::vector<Vec3> normals;
+  double mean = 0.0;
+  double least = std::numeric_limits<double>::infinity();
+  for (const BasisValues& v : basis[1])
+  {
+    for (const BasisValues& u : basis[0])
+    {
+      normals.push_back(evaluatePatch(model, s, u, v).normal());
+      mean += normals.back().norm() / (Grid * Grid);
+      least = std::min(least, normals.back().norm());
+    }
+  }
+  const double size = mean > 0.0 ? least / mean : 0.0;
+  return normalsFold(normals, Grid) ? std::min(-size, -1e-300) : size;
+}
+
 std::vector<double> patchJacobians(const SplineModel& model)
 {
   std::vector<double> out(model.Patches.size(), 0.0);
   parallelFor(0, static_cast<std::int64_t>(out.size()), 1,
     [&](std::int64_t begin, std::int64_t end)
     {
-      std::vector<Vec3> normals(static_cast<std::size_t>(Grid) * Grid);
       for (std::int64_t p = begin; p < end; ++p)
       {
-        const auto d = patchDomain(model, model.Patches[p]);
-        double mean = 0.0;
-        double least = std::numeric_limits<double>::infinity();
-        for (int j = 0; j < Grid; ++j)
-        {
-          for (int i = 0; i < Grid; ++i)
-          {
-            const double u = d[0] + (d[1] - d[0]) * i / (Grid - 1);
-            const double v = d[2] + (d[3] - d[2]) * j / (Grid - 1);
-            Vec3& n = normals[static_cast<std::size_t>(j) * Grid + i];
-            n = evaluatePatch(model, model.Patches[p], u, v).normal();
-            mean += n.norm() / (Grid * Grid);
-            least = std::min(least, n.norm());
-          }
-        }
-        const double size = mean > 0.0 ? least / mean : 0.0;
-        out[p] = normalsFold(normals, Grid) ? std::min(-size, -1e-300) : size;
+        out[p] = patchJacobian(model, p);
       }
     });
   return out;

@@ -21,6 +21,7 @@ using SideJumps = std::array<double, 4>;
 std::vector<SideJumps> normalJumps(const SplineModel& model, int samples = 65);
 
 /// Smallest |Su x Sv| over its mean on a grid of 25 x 25; negative where the patch is folded.
+double patchJacobian(const SplineModel& model, std::int64_t patch);
 std::vector<double> patchJacobians(const SplineModel& model);
 
 /// Distances of the points of some contours from a model, by patch.
