@@ -16,6 +16,7 @@ constexpr int Smoothing = 3;      ///< rounds on the function that is cut
 constexpr double Snap = 0.2;      ///< of an edge
 constexpr double DrawReach = 0.5; ///< of the mouth's radius: how far the surface moves along
 constexpr double MostShift = 0.2; ///< of the mouth's radius
+constexpr double BandReach = 0.2; ///< of the mouth's radius: how far the crest may be off the rim
 
 /// Vertices reachable from `seed` over edges between vertices for which inside() holds.
 template <class Inside>
@@ -99,6 +100,44 @@ void smooth(std::vector<double>& value, const std::vector<std::vector<Index>>& n
   }
 }
 
+/// What of the negative part belongs to the body, reached from `outside`. Where the crest lies
+/// behind the rim and the cap falls steeply, the cap's negative part is joined to the body's over
+/// the crest: they are parted halfway in the band around the rim.
+std::vector<char> bodyPart(const std::vector<std::vector<Index>>& neighbors,
+  const std::vector<double>& value, const std::vector<char>& band, Index outside)
+{
+  std::vector<char> body =
+    connected(neighbors, outside, [&](Index v) { return value[v] < 0.0 && !band[v]; });
+  std::vector<char> known = body;
+  std::vector<Index> front;
+  for (std::size_t i = 0; i < value.size(); ++i)
+  {
+    if (value[i] < 0.0 && !band[i])
+    {
+      known[i] = 1;
+      front.push_back(static_cast<Index>(i));
+    }
+  }
+  while (!front.empty())
+  {
+    std::vector<Index> next;
+    for (const Index v : front)
+    {
+      for (const Index w : neighbors[v])
+      {
+        if (!known[w] && value[w] < 0.0)
+        {
+          known[w] = 1;
+          body[w] = body[v];
+          next.push_back(w);
+        }
+      }
+    }
+    front = std::move(next);
+  }
+  return body;
+}
+
 /// The function whose zero level is the rim: made positive in one connected part without holes.
 std::optional<std::vector<double>> endFunction(
   const TriangleMesh& mesh, const MouthFrame& frame, const FiberRim& rim, double radius)
@@ -110,10 +149,12 @@ std::optional<std::vector<double>> endFunction(
     widest = std::max(widest, r);
   }
   std::vector<double> value(mesh.Points.size());
+  std::vector<char> band(value.size());
   for (std::size_t i = 0; i < value.size(); ++i)
   {
     const Vec3& p = mesh.Points[i];
     const Vec2 edge = rim.at(frame.bin(p));
+    band[i] = (Vec2(frame.radius(p), frame.height(p)) - edge).norm() < BandReach * radius;
     const double f = frame.height(p) - edge.y() - (frame.radius(p) - edge.x());
     const bool far = (p - frame.Center).norm() > 2.0 * widest;
     value[i] = far ? -std::max(std::abs(f), 1e-9 * radius) : (f == 0.0 ? 1e-9 * radius : f);
@@ -128,7 +169,7 @@ std::optional<std::vector<double>> endFunction(
   // The cap may lie so deep in the lumen that it is negative: what counts is that the ring of the
   // end face, which is positive, parts it from the body.
   const auto outside = static_cast<Index>(lowest - value.begin());
-  const auto below = connected(neighbors, outside, [&](Index v) { return value[v] < 0.0; });
+  const auto below = bodyPart(neighbors, value, band, outside);
   if (below[seed])
   {
     return std::nullopt;
