@@ -134,6 +134,28 @@ TEST(FiberEnds, CutsBothEndsAlongTheOuterRim)
   }
 }
 
+TEST(FiberEnds, TheRimDoesNotDiveIntoASteepCap)
+{
+  // A notch of 2 in the wall's crest, beside which the cap falls by another 12.
+  TriangleMesh mesh = capsule(4.0);
+  for (Vec3& p : mesh.Points)
+  {
+    const double a = std::atan2(p.z(), p.y()) / 0.45;
+    const double share = std::pow(std::max(0.0, 1.0 - a * a), 2.0);
+    const double top = std::max(0.0, p.x() - 20.0) / 10.0;
+    const double r = std::hypot(p.y(), p.z());
+    p.x() -= share * top * (2.0 + (r > 3.0 && r < 11.5 ? 12.0 : 0.0));
+  }
+  Monitor monitor;
+  const auto ends = findFiberEnds(mesh, bothMouths(), monitor);
+  ASSERT_TRUE(ends);
+  ASSERT_EQ(ends->Rims.size(), 2u) << ends->Note;
+  for (const auto& rim : ends->Rims)
+  {
+    EXPECT_LT(offRim(*ends, rim).second, 3.0);
+  }
+}
+
 TEST(FiberEnds, TheRimPassesAWebOverDebris)
 {
   TriangleMesh mesh = capsule(4.0);
