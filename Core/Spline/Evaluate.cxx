@@ -4,13 +4,10 @@ namespace bsr
 {
 namespace
 {
-/// Homogeneous point and derivatives: columns S, Su, Sv, Suu, Suv, Svv of (w x, w y, w z, w).
-using Homogeneous = Eigen::Matrix<double, 4, 6>;
-
-Homogeneous sumUp(
+HomogeneousPoint sumUp(
   const SplineModel& model, const SplinePatch& patch, const BasisValues& bu, const BasisValues& bv)
 {
-  Homogeneous h = Homogeneous::Zero();
+  HomogeneousPoint h = HomogeneousPoint::Zero();
   for (int j = 0; j <= patch.DegreeV; ++j)
   {
     Eigen::Matrix<double, 4, 3> row = Eigen::Matrix<double, 4, 3>::Zero();
@@ -52,15 +49,6 @@ SurfacePoint evaluatePatch(const SplineModel& model, const SplinePatch& patch, d
 SurfacePoint evaluatePatch(const SplineModel& model, const SplinePatch& patch,
   const BasisValues& basisU, const BasisValues& basisV)
 {
-  const Homogeneous h = sumUp(model, patch, basisU, basisV);
-  const auto w = h.row(3);
-  SurfacePoint s;
-  s.Point = h.col(0).head<3>() / w[0];
-  s.Du = (h.col(1).head<3>() - w[1] * s.Point) / w[0];
-  s.Dv = (h.col(2).head<3>() - w[2] * s.Point) / w[0];
-  s.Duu = (h.col(3).head<3>() - 2 * w[1] * s.Du - w[3] * s.Point) / w[0];
-  s.Duv = (h.col(4).head<3>() - w[1] * s.Dv - w[2] * s.Du - w[4] * s.Point) / w[0];
-  s.Dvv = (h.col(5).head<3>() - 2 * w[2] * s.Dv - w[5] * s.Point) / w[0];
-  return s;
+  return projected(sumUp(model, patch, basisU, basisV));
 }
 } // namespace bsr

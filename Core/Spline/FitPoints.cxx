@@ -4,7 +4,7 @@
 
 namespace bsr
 {
-PatchPoint NetEvaluator::at(Index patch, const BasisValues& u, const BasisValues& v) const
+SurfacePoint NetEvaluator::at(Index patch, const BasisValues& u, const BasisValues& v) const
 {
   Eigen::Matrix<double, 3, 6> sum = Eigen::Matrix<double, 3, 6>::Zero();
   for (int j = 0; j < 4; ++j)

@@ -39,7 +39,7 @@ public:
   {
     return evaluateBasis(this->Knots.data(), 3, this->Net.side(), t);
   }
-  PatchPoint at(Index patch, double u, double v) const
+  SurfacePoint at(Index patch, double u, double v) const
   {
     if (this->Own && !this->Own->empty() && !(*this->Own)[patch].empty())
     {
@@ -48,7 +48,7 @@ public:
     return this->at(patch, this->basis(u), this->basis(v));
   }
   /// Of the net's own patch.
-  PatchPoint at(Index patch, const BasisValues& u, const BasisValues& v) const;
+  SurfacePoint at(Index patch, const BasisValues& u, const BasisValues& v) const;
 
 private:
   const PatchNet& Net;

@@ -49,7 +49,7 @@ Step modelStep(double a, double b, double c, double gu, double gv, double u, dou
 }
 
 /// Where the unclamped first-order step points: the side that it leaves through, or -1.
-int leavingSide(const PatchPoint& s, const Vec3& e, double u, double v)
+int leavingSide(const SurfacePoint& s, const Vec3& e, double u, double v)
 {
   if (v <= 0.0 && s.Dv.dot(e) < 0.0)
   {
@@ -68,7 +68,7 @@ int leavingSide(const PatchPoint& s, const Vec3& e, double u, double v)
 
 void taylor(const NetEvaluator& surface, FitPoint& p)
 {
-  const PatchPoint s = surface.at(p.Patch, p.U, p.V);
+  const SurfacePoint s = surface.at(p.Patch, p.U, p.V);
   const Vec3 e = p.Position - s.Point;
   const Step d = modelStep(
     s.Du.squaredNorm(), s.Du.dot(s.Dv), s.Dv.squaredNorm(), s.Du.dot(e), s.Dv.dot(e), p.U, p.V);
@@ -82,7 +82,7 @@ void newton(const At& at, FitPoint& p, int iterations = 12)
 {
   for (int i = 0; i < iterations; ++i)
   {
-    const PatchPoint s = at(p.U, p.V);
+    const SurfacePoint s = at(p.U, p.V);
     const Vec3 e = p.Position - s.Point;
     const double gu = s.Du.dot(e);
     const double gv = s.Dv.dot(e);
@@ -125,7 +125,7 @@ void newton(const At& at, FitPoint& p, int iterations = 12)
 /// Hands a point that sits on a side and wants across to the neighbor there.
 bool cross(const NetEvaluator& surface, const QuadComplex& complex, FitPoint& p)
 {
-  const PatchPoint s = surface.at(p.Patch, p.U, p.V);
+  const SurfacePoint s = surface.at(p.Patch, p.U, p.V);
   const int side = leavingSide(s, p.Position - s.Point, p.U, p.V);
   const Index twin = side < 0 ? -1 : complex.twin(4 * p.Patch + side);
   if (twin < 0)
@@ -206,7 +206,7 @@ std::vector<Residual> residuals(const NetEvaluator& evaluator, const std::vector
     {
       for (std::int64_t i = begin; i < end; ++i)
       {
-        const PatchPoint s = evaluator.at(points[i].Patch, points[i].U, points[i].V);
+        const SurfacePoint s = evaluator.at(points[i].Patch, points[i].U, points[i].V);
         const Vec3 e = points[i].Position - s.Point;
         const Vec3 n = s.normal();
         const double size = n.norm();

@@ -72,12 +72,12 @@ RationalPatch::RationalPatch(int segmentsU, int segmentsV)
 {
 }
 
-PatchPoint RationalPatch::at(double u, double v) const
+SurfacePoint RationalPatch::at(double u, double v) const
 {
   const int n = this->countU();
   const BasisValues bu = evaluateBasis(this->KnotsU.data(), 3, n, u);
   const BasisValues bv = evaluateBasis(this->KnotsV.data(), 3, this->countV(), v);
-  Eigen::Matrix<double, 4, 6> h = Eigen::Matrix<double, 4, 6>::Zero();
+  HomogeneousPoint h = HomogeneousPoint::Zero();
   for (int j = 0; j < 4; ++j)
   {
     for (int i = 0; i < 4; ++i)
@@ -92,15 +92,7 @@ PatchPoint RationalPatch::at(double u, double v) const
       h.col(5) += bu.Value[i] * bv.Derivative2[j] * p;
     }
   }
-  const auto w = h.row(3);
-  PatchPoint s;
-  s.Point = h.col(0).head<3>() / w[0];
-  s.Du = (h.col(1).head<3>() - w[1] * s.Point) / w[0];
-  s.Dv = (h.col(2).head<3>() - w[2] * s.Point) / w[0];
-  s.Duu = (h.col(3).head<3>() - 2 * w[1] * s.Du - w[3] * s.Point) / w[0];
-  s.Duv = (h.col(4).head<3>() - w[1] * s.Dv - w[2] * s.Du - w[4] * s.Point) / w[0];
-  s.Dvv = (h.col(5).head<3>() - 2 * w[2] * s.Dv - w[5] * s.Point) / w[0];
-  return s;
+  return projected(h);
 }
 
 RationalPatch refined(const RationalPatch& patch, int factorU, int factorV)

@@ -1,24 +1,12 @@
 #pragma once
 
 #include "Spline/Basis.h"
+#include "Spline/SurfacePoint.h"
 
 #include "Common/Types.h"
 
 namespace bsr
 {
-/// A point of a patch with its derivatives.
-struct PatchPoint
-{
-  Vec3 Point;
-  Vec3 Du;
-  Vec3 Dv;
-  Vec3 Duu;
-  Vec3 Duv;
-  Vec3 Dvv;
-
-  Vec3 normal() const { return this->Du.cross(this->Dv); }
-};
-
 /**
  * A rational bicubic patch on its own: SegmentsU and SegmentsV segments along u and v on [0, 1]
  * with double inner knots, 2 m + 2 control points a direction, u fastest.
@@ -37,7 +25,7 @@ struct RationalPatch
   bool empty() const { return this->ControlPoints.empty(); }
   int countU() const { return 2 * this->SegmentsU + 2; }
   int countV() const { return 2 * this->SegmentsV + 2; }
-  PatchPoint at(double u, double v) const;
+  SurfacePoint at(double u, double v) const;
 };
 
 /// Control points along a side of a patch (k as of a half-edge, counter-clockwise: v=0, u=1, v=1,

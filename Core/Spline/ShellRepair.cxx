@@ -100,7 +100,7 @@ std::vector<FitPoint> ShellFaults::pointsBelow(double depth) const
         p.Patch = static_cast<Index>(i / (Grid * Grid));
         p.U = k % Grid / (Grid - 1.0);
         p.V = k / Grid / (Grid - 1.0);
-        const PatchPoint s = surface.at(p.Patch, p.U, p.V);
+        const SurfacePoint s = surface.at(p.Patch, p.U, p.V);
         p.Position = s.Point - 0.25 * depth * s.normal().normalized();
         for (int n = 0; n < Steps; ++n)
         {
@@ -130,7 +130,7 @@ std::vector<RimSample> alignedRim(
       {
         const double t = (s + 0.5) / 8.0;
         const double uv[4][2] = {{t, 0.0}, {1.0, t}, {1.0 - t, 1.0}, {0.0, 1.0 - t}};
-        const PatchPoint p = surface.at(h / 4, uv[h % 4][0], uv[h % 4][1]);
+        const SurfacePoint p = surface.at(h / 4, uv[h % 4][0], uv[h % 4][1]);
         const Vec3 along = h % 2 ? p.Dv : p.Du;
         samples.push_back({h, t, p.Point, along.normalized(), 1.0});
       }

@@ -20,10 +20,10 @@ double parameter(std::int64_t k)
   return static_cast<double>(k) / (Samples - 1.0);
 }
 
-std::vector<PatchPoint> sampleShell(const PatchNet& net, const NetPoints& shell)
+std::vector<SurfacePoint> sampleShell(const PatchNet& net, const NetPoints& shell)
 {
   const NetEvaluator surface(net, shell);
-  std::vector<PatchPoint> samples(net.patches() * Own);
+  std::vector<SurfacePoint> samples(net.patches() * Own);
   parallelFor(0, net.patches(), 8,
     [&](std::int64_t begin, std::int64_t end)
     {
@@ -38,11 +38,11 @@ std::vector<PatchPoint> sampleShell(const PatchNet& net, const NetPoints& shell)
   return samples;
 }
 
-std::vector<Vec3> placesOf(const std::vector<PatchPoint>& samples)
+std::vector<Vec3> placesOf(const std::vector<SurfacePoint>& samples)
 {
   std::vector<Vec3> places;
   places.reserve(samples.size());
-  for (const PatchPoint& p : samples)
+  for (const SurfacePoint& p : samples)
   {
     places.push_back(p.Point);
   }
@@ -73,7 +73,7 @@ WallGauge::WallGauge(const PatchNet& net, const NetPoints& outer)
 WallGauge::Wall WallGauge::at(const Vec3& place) const
 {
   const auto [nearest, distance2] = this->Tree.nearest(place);
-  const PatchPoint& o = this->Outside[nearest];
+  const SurfacePoint& o = this->Outside[nearest];
   Wall w;
   w.Normal = o.normal().normalized();
   w.Height = (o.Point - place).dot(w.Normal);
@@ -158,8 +158,8 @@ std::vector<Index> foldedWalls(
       {
         const double t = i / (Grid - 1.0);
         const double uv[4][2] = {{t, 0.0}, {1.0, t}, {1.0 - t, 1.0}, {0.0, 1.0 - t}};
-        const PatchPoint o = outside.at(h / 4, uv[h % 4][0], uv[h % 4][1]);
-        const PatchPoint n = inside.at(h / 4, uv[h % 4][0], uv[h % 4][1]);
+        const SurfacePoint o = outside.at(h / 4, uv[h % 4][0], uv[h % 4][1]);
+        const SurfacePoint n = inside.at(h / 4, uv[h % 4][0], uv[h % 4][1]);
         const Vec3& along = h % 2 ? o.Dv : o.Du;
         const Vec3& alongInner = h % 2 ? n.Dv : n.Du;
         for (int j = 0; j < Grid; ++j)

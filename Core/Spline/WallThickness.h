@@ -1,7 +1,7 @@
 #pragma once
 
-#include "Spline/FitPoints.h"
 #include "Mesh/PointTree.h"
+#include "Spline/FitPoints.h"
 
 namespace bsr
 {
@@ -20,7 +20,7 @@ public:
   Wall at(const Vec3& place) const;
 
 private:
-  std::vector<PatchPoint> Outside;
+  std::vector<SurfacePoint> Outside;
   PointTree Tree;
 };
 

@@ -148,8 +148,8 @@ TEST(RationalPatch, RefinementDoesNotChangeTheSurface)
   {
     for (int j = 0; j <= 20; ++j)
     {
-      const PatchPoint a = p.at(i / 20.0, j / 20.0);
-      const PatchPoint b = fine.at(i / 20.0, j / 20.0);
+      const SurfacePoint a = p.at(i / 20.0, j / 20.0);
+      const SurfacePoint b = fine.at(i / 20.0, j / 20.0);
       EXPECT_LT((a.Point - b.Point).norm(), 1e-13);
       EXPECT_LT((a.Du - b.Du).norm(), 1e-11);
       EXPECT_LT((a.Duv - b.Duv).norm(), 1e-9);
