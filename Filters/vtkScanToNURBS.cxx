@@ -34,6 +34,8 @@ vtkStandardNewMacro(vtkScanToNURBS);
 namespace
 {
 constexpr double SmallestPart = 0.005; ///< of a scan's area
+constexpr double QuadGrowth = 1.5;     ///< more quads where a layout does not do
+constexpr int MostRounds = 3;
 
 /// The parts of a surface of at least SmallestPart of its area; the number of parts left out.
 int dropSpecks(vtkPolyData* surface, vtkPolyData* out)
@@ -124,12 +126,147 @@ vtkTypeBool vtkScanToNURBS::ProcessRequest(
   return this->Superclass::ProcessRequest(request, input, output);
 }
 
+/// The stages, kept so that their results can be given out.
+struct vtkScanToNURBS::Stages
+{
+  Stages(vtkScanToNURBS* self, vtkPolyData* scan) : Self(self), Scan(scan), Run(self, 116.0) {}
+
+  /// The scan's surface without specks and holes.
+  bool close()
+  {
+    this->Cloud = this->Scan->GetNumberOfPolys() == 0 && this->Scan->GetNumberOfStrips() == 0;
+    if (this->Cloud)
+    {
+      this->Surface->SetInputData(this->Scan);
+      this->Surface->SetDimension(this->Self->ReconstructionDimension);
+      if (!this->Run.run("SurfaceFromPoints", this->Surface, 15.0))
+      {
+        return false;
+      }
+      this->Fill->SetInputConnection(this->Surface->GetOutputPort(vtkSurfaceFromPoints::SURFACE));
+    }
+    else
+    {
+      this->Triangles->SetInputData(this->Scan);
+      this->Triangles->PassVertsOff();
+      this->Triangles->PassLinesOff();
+      if (!this->Run.run("Triangulate", this->Triangles, 1.0))
+      {
+        return false;
+      }
+      this->Specks = dropSpecks(this->Triangles->GetOutput(), this->Whole);
+      this->Fill->SetInputData(this->Whole);
+    }
+    this->Fill->SetMaximumHoleSize(this->Self->MaximumHoleSize);
+    return this->Run.run("FillHolesRBF", this->Fill, 15.0);
+  }
+
+  void connect()
+  {
+    this->Remesh->SetInputConnection(this->Fill->GetOutputPort());
+    this->Remesh->SetMethod(this->Self->Method);
+    this->Remesh->SetSizing(this->Self->Sizing);
+    this->Remesh->SetFeatureAngle(this->Self->FeatureAngle);
+    this->Partition->SetInputConnection(
+      0, this->Cloud ? this->Surface->GetOutputPort(vtkSurfaceFromPoints::POINTS)
+                     : this->Fill->GetOutputPort());
+    this->Partition->SetInputConnection(1, this->Remesh->GetOutputPort());
+    this->Partition->SetInputConnection(2, this->Fill->GetOutputPort());
+    this->Partition->SetMethod(this->Self->Partition);
+    this->Fit->SetInputConnection(0, this->Partition->GetOutputPort(0));
+    this->Fit->SetInputConnection(1, this->Remesh->GetOutputPort());
+    this->Fit->SetSegmentsPerSide(this->Self->SegmentsPerSide);
+    this->Fit->SetRobustWeights(this->Self->RobustWeights);
+    this->Fit->SetCreaseAngle(std::min(this->Self->FeatureAngle, 180.0));
+    this->Fit->SetCorrelatedNoise(false);
+    this->Fit->SetRational(this->Self->Optimizer > 0 || this->Self->Tolerance > 0.0);
+    this->Fit->SetOptimizer(this->Self->Optimizer);
+    this->Fit->SetTolerance(this->Self->Tolerance * this->Scan->GetLength());
+    this->Fit->SetResolution(this->Self->Resolution);
+  }
+
+  /// Layout, parameters and fit; again with more quads where regions are no discs or patches fold.
+  bool model()
+  {
+    this->connect();
+    int quads = this->Self->NumberOfQuads;
+    for (int more = this->Self->MoreQuads ? MostRounds : 0;; --more)
+    {
+      const double share = quads == this->Self->NumberOfQuads ? 1.0 : 0.0;
+      this->Remesh->SetNumberOfQuads(quads);
+      if (!this->Run.run("QuadRemesh", this->Remesh, 25.0 * share) ||
+          !this->Run.run("PartitionToQuads", this->Partition, 25.0 * share))
+      {
+        return false;
+      }
+      const bool last = more == 0;
+      if (last || this->count(this->Partition, 0, "FailedQuads") == 0.0)
+      {
+        if (!this->Run.run("BSplineG1Fit", this->Fit, 33.0))
+        {
+          return false;
+        }
+        if (last || this->count(this->Fit, REPORT, "FoldedPatches") == 0.0)
+        {
+          return true;
+        }
+      }
+      quads = static_cast<int>(std::ceil(QuadGrowth * quads));
+      ++this->Rounds;
+    }
+  }
+
+  /// A value of an output's field data; 0 where it is absent.
+  static double count(vtkAlgorithm* stage, int port, const char* name)
+  {
+    vtkDataArray* a = stage->GetOutputDataObject(port)->GetFieldData()->GetArray(name);
+    return a ? a->GetComponent(0, 0) : 0.0;
+  }
+
+  void giveOut(vtkInformationVector* outputs)
+  {
+    for (int port = 0; port < 3; ++port)
+    {
+      vtkDataObject::GetData(outputs, port)->ShallowCopy(this->Fit->GetOutputDataObject(port));
+    }
+    vtkDataObject* parameters = this->Partition->GetOutputDataObject(0);
+    vtkPolyData::GetData(outputs, CLOSED_MESH)->ShallowCopy(this->Fill->GetOutput());
+    vtkPolyData::GetData(outputs, LAYOUT)->ShallowCopy(this->Remesh->GetOutput());
+    vtkPolyData::GetData(outputs, POINTS)->ShallowCopy(parameters);
+    vtkPolyData::GetData(outputs, NETWORK)->ShallowCopy(this->Partition->GetOutputDataObject(1));
+    vtkFieldData* report = vtkTable::GetData(outputs, REPORT)->GetFieldData();
+    this->Run.addTimes(report);
+    copyFields(
+      this->Fill->GetOutput(), report, {"FilledHoles", "LeftHoles", "HoleSize", "HoleState"});
+    copyFields(this->Remesh->GetOutput(), report, {"Irregular", "EulerCharacteristic"});
+    copyFields(parameters, report, {"FailedQuads", "RoughSides", "FoldedTriangles"});
+    const double diagonal = this->Scan->GetLength();
+    bsr::addField(report, "DroppedParts", this->Specks);
+    bsr::addField(report, "MoreQuadsRounds", this->Rounds);
+    bsr::addField(report, "RelativeRMS", this->count(this->Fit, REPORT, "RMS") / diagonal);
+    bsr::addField(report, "RelativeMax", this->count(this->Fit, REPORT, "Max") / diagonal);
+  }
+
+  vtkScanToNURBS* Self;
+  vtkPolyData* Scan;
+  bsr::StageRunner Run;
+  bool Cloud = false;
+  int Specks = 0;
+  int Rounds = 0; ///< with more quads
+  vtkNew<vtkPolyData> Whole;
+  vtkNew<vtkTriangleFilter> Triangles;
+  vtkNew<vtkSurfaceFromPoints> Surface;
+  vtkNew<vtkFillHolesRBF> Fill;
+  vtkNew<vtkQuadRemesh> Remesh;
+  vtkNew<vtkPartitionToQuads> Partition;
+  vtkNew<vtkBSplineG1Fit> Fit;
+};
+
 int vtkScanToNURBS::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkNew<vtkPolyData> scan;
   scan->ShallowCopy(vtkPolyData::GetData(inputs[0]));
-  bsr::StageRunner stages(this, 116.0);
   const auto fail = [&](const std::string& message)
   {
     for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
@@ -143,117 +280,19 @@ int vtkScanToNURBS::RequestData(
     vtkErrorMacro(<< message);
     return 0;
   };
-  const auto failed = [&]()
-  {
-    const std::string why = stages.message();
-    return fail(why.empty() ? why : stages.stage() + ": " + why);
-  };
   const auto checked = bsr::pointsFrom(scan->GetPoints());
   if (!checked || checked->size() < 8)
   {
     return fail(checked ? "The input has fewer than 8 points; check the filters above."
                         : checked.status().message());
   }
-
-  vtkNew<vtkFillHolesRBF> fill;
-  fill->SetMaximumHoleSize(this->MaximumHoleSize);
-  const bool cloud = scan->GetNumberOfPolys() == 0 && scan->GetNumberOfStrips() == 0;
-  vtkNew<vtkPolyData> points;
-  vtkNew<vtkTriangleFilter> triangles;
-  int specks = 0;
-  if (cloud)
+  Stages stages(this, scan);
+  if (!stages.close() || !stages.model())
   {
-    vtkNew<vtkSurfaceFromPoints> surface;
-    surface->SetInputData(scan);
-    surface->SetDimension(this->ReconstructionDimension);
-    if (!stages.run("SurfaceFromPoints", surface, 15.0))
-    {
-      return failed();
-    }
-    points->ShallowCopy(surface->GetOutput(vtkSurfaceFromPoints::POINTS));
-    fill->SetInputData(surface->GetOutput(vtkSurfaceFromPoints::SURFACE));
+    const std::string why = stages.Run.message();
+    return fail(why.empty() ? why : stages.Run.stage() + ": " + why);
   }
-  else
-  {
-    triangles->SetInputData(scan);
-    triangles->PassVertsOff();
-    triangles->PassLinesOff();
-    if (!stages.run("Triangulate", triangles, 1.0))
-    {
-      return failed();
-    }
-    vtkNew<vtkPolyData> whole;
-    specks = dropSpecks(triangles->GetOutput(), whole);
-    fill->SetInputData(whole);
-  }
-  if (!stages.run("FillHolesRBF", fill, 15.0))
-  {
-    return failed();
-  }
-
-  vtkNew<vtkQuadRemesh> remesh;
-  remesh->SetInputConnection(fill->GetOutputPort());
-  remesh->SetMethod(this->Method);
-  remesh->SetNumberOfQuads(this->NumberOfQuads);
-  remesh->SetSizing(this->Sizing);
-  remesh->SetFeatureAngle(this->FeatureAngle);
-  if (!stages.run("QuadRemesh", remesh, 25.0))
-  {
-    return failed();
-  }
-
-  vtkNew<vtkPartitionToQuads> partition;
-  if (cloud)
-  {
-    partition->SetInputData(0, points);
-  }
-  else
-  {
-    partition->SetInputConnection(0, fill->GetOutputPort());
-  }
-  partition->SetInputConnection(1, remesh->GetOutputPort());
-  partition->SetInputConnection(2, fill->GetOutputPort());
-  partition->SetMethod(this->Partition);
-  if (!stages.run("PartitionToQuads", partition, 25.0))
-  {
-    return failed();
-  }
-
-  const double diagonal = scan->GetLength();
-  vtkNew<vtkBSplineG1Fit> fit;
-  fit->SetInputConnection(0, partition->GetOutputPort(0));
-  fit->SetInputConnection(1, remesh->GetOutputPort());
-  fit->SetSegmentsPerSide(this->SegmentsPerSide);
-  fit->SetRobustWeights(this->RobustWeights);
-  fit->SetCreaseAngle(std::min(this->FeatureAngle, 180.0));
-  fit->SetCorrelatedNoise(false);
-  fit->SetRational(this->Optimizer > 0 || this->Tolerance > 0.0);
-  fit->SetOptimizer(this->Optimizer);
-  fit->SetTolerance(this->Tolerance * diagonal);
-  fit->SetResolution(this->Resolution);
-  if (!stages.run("BSplineG1Fit", fit, 33.0))
-  {
-    return failed();
-  }
-
-  for (int port = 0; port < 3; ++port)
-  {
-    vtkDataObject::GetData(outputs, port)->ShallowCopy(fit->GetOutputDataObject(port));
-  }
-  vtkPolyData::GetData(outputs, CLOSED_MESH)->ShallowCopy(fill->GetOutput());
-  vtkPolyData::GetData(outputs, LAYOUT)->ShallowCopy(remesh->GetOutput());
-  vtkPolyData::GetData(outputs, POINTS)->ShallowCopy(partition->GetOutputDataObject(0));
-  vtkPolyData::GetData(outputs, NETWORK)->ShallowCopy(partition->GetOutputDataObject(1));
-
-  vtkFieldData* report = vtkTable::GetData(outputs, REPORT)->GetFieldData();
-  stages.addTimes(report);
-  copyFields(fill->GetOutput(), report, {"FilledHoles", "LeftHoles", "HoleSize", "HoleState"});
-  copyFields(remesh->GetOutput(), report, {"Irregular", "EulerCharacteristic"});
-  copyFields(
-    partition->GetOutputDataObject(0), report, {"FailedQuads", "RoughSides", "FoldedTriangles"});
-  bsr::addField(report, "DroppedParts", specks);
-  bsr::addField(report, "RelativeRMS", report->GetArray("RMS")->GetComponent(0, 0) / diagonal);
-  bsr::addField(report, "RelativeMax", report->GetArray("Max")->GetComponent(0, 0) / diagonal);
+  stages.giveOut(outputs);
   return 1;
 }
 
@@ -262,6 +301,7 @@ void vtkScanToNURBS::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Method: " << this->Method << "\n"
      << indent << "NumberOfQuads: " << this->NumberOfQuads << "\n"
+     << indent << "MoreQuads: " << this->MoreQuads << "\n"
      << indent << "MaximumHoleSize: " << this->MaximumHoleSize << "\n"
      << indent << "Optimizer: " << this->Optimizer << "\n"
      << indent << "Tolerance: " << this->Tolerance << "\n"

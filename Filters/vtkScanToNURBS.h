@@ -70,6 +70,15 @@ public:
   ///@}
 
   ///@{
+  /// Where regions of the layout are no discs on the scan or patches fold, lay out again with half
+  /// as many quads more, up to three times (`MoreQuadsRounds` in the report). Default on; off: the
+  /// best effort with the number asked for.
+  vtkSetMacro(MoreQuads, bool);
+  vtkGetMacro(MoreQuads, bool);
+  vtkBooleanMacro(MoreQuads, bool);
+  ///@}
+
+  ///@{
   /// Holes of a larger diameter stay open; a share of the bounding box's diagonal. Default 0.25.
   /// Planar cut ends of tubes stay open whatever their size (see vtkFillHolesRBF).
   vtkSetMacro(MaximumHoleSize, double);
@@ -149,6 +158,7 @@ protected:
 
   int Method = 0;
   int NumberOfQuads = 300;
+  bool MoreQuads = true;
   double MaximumHoleSize = 0.25;
   int Optimizer = 0;
   double Tolerance = 0.0;
@@ -161,6 +171,8 @@ protected:
   int Resolution = 4;
 
 private:
+  struct Stages;
+
   vtkScanToNURBS(const vtkScanToNURBS&) = delete;
   void operator=(const vtkScanToNURBS&) = delete;
 };

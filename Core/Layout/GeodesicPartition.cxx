@@ -3,7 +3,7 @@
 #include "Common/BoxTree.h"
 #include "Common/Parallel.h"
 #include "Layout/CutMesh.h"
-#include "Layout/NearestQuad.h"
+#include "Layout/MappedTriangles.h"
 #include "Layout/SquareMap.h"
 #include "Mesh/BoundaryLoops.h"
 #include "Mesh/BuildSurface.h"
@@ -21,6 +21,7 @@ namespace
 constexpr double EdgeShare = 0.14; ///< longest edge of the refined mesh, of a quad's mean side
 constexpr int Attempts = 3;        ///< orders of the sides that are tried
 constexpr double Margin = 0.04;    ///< paths keep this share of an edge away from its ends
+constexpr double OnMesh = 1e-6;    ///< of the diagonal: such points lie on the mesh
 constexpr double Shore = 0.15;     ///< of a side's length: nearer to other sides it is slow
 
 double meanSide(const QuadMesh& quads)
@@ -34,6 +35,14 @@ double meanSide(const QuadMesh& quads)
     }
   }
   return sum / (4.0 * static_cast<double>(quads.Quads.size()));
+}
+
+/// Diagonal of the points' bounding box.
+double diagonalOf(const std::vector<Vec3>& points)
+{
+  Box box;
+  std::for_each(points.begin(), points.end(), [&](const Vec3& p) { box.add(p); });
+  return (box.Max - box.Min).norm();
 }
 
 /// Whether the quads' normals run against those of the mesh beneath them, by majority.
@@ -198,111 +207,6 @@ SquareDisc discOf(const CutMesh& cut, const LayoutGraph& graph, Index quad, cons
   }
   return disc;
 }
-
-/// Triangles with (u, v) at their corners, for nearest-point queries.
-class MappedTriangles
-{
-public:
-  void add(const LocalMesh& local, const std::vector<Vec2>& uv, Index quad)
-  {
-    for (const auto& t : local.Mesh.Triangles)
-    {
-      Item item;
-      for (int k = 0; k < 3; ++k)
-      {
-        item.P[k] = local.Mesh.Points[t[k]];
-        item.UV[k] = uv[t[k]];
-      }
-      item.Quad = quad;
-      this->Items.push_back(item);
-    }
-  }
-
-  void addUnmapped(const TriangleSurface& s, Index face)
-  {
-    Item item;
-    for (int k = 0; k < 3; ++k)
-    {
-      item.P[k] = s.Points[s.corners(face)[k]];
-      item.UV[k] = Vec2::Zero();
-    }
-    this->Items.push_back(item);
-  }
-
-  void build()
-  {
-    std::vector<Box> boxes(this->Items.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-    {
-      for (const Vec3& p : this->Items[i].P)
-      {
-        boxes[i].add(p);
-      }
-    }
-    this->Tree = BoxTree(boxes);
-  }
-
-  /// The nearest triangle that faces a way (zero: any); quad -1 where it belongs to none.
-  QuadHit find(const Vec3& p, const Vec3& facing) const
-  {
-    QuadHit hit;
-    double bound = hit.SquaredDistance;
-    Index best = -1;
-    Vec3 foot = Vec3::Zero();
-    this->Tree.nearest(p, bound,
-      [&](Index i)
-      {
-        const Item& t = this->Items[i];
-        if (facing.squaredNorm() > 0.0 &&
-            (t.P[1] - t.P[0]).cross(t.P[2] - t.P[0]).dot(facing) <= 0.0)
-        {
-          return;
-        }
-        const Vec3 q = nearestOnTriangle(p, t.P[0], t.P[1], t.P[2]);
-        const double d = (q - p).squaredNorm();
-        if (d < bound || (d == bound && i < best))
-        {
-          bound = d;
-          best = i;
-          foot = q;
-        }
-      });
-    if (best < 0)
-    {
-      return facing.squaredNorm() > 0.0 ? this->find(p, Vec3::Zero()) : hit;
-    }
-    const Item& t = this->Items[best];
-    hit.Quad = t.Quad;
-    hit.SquaredDistance = bound;
-    hit.UV = interpolate(t, foot);
-    return hit;
-  }
-
-private:
-  struct Item
-  {
-    std::array<Vec3, 3> P;
-    std::array<Vec2, 3> UV;
-    Index Quad = -1;
-  };
-
-  static Vec2 interpolate(const Item& t, const Vec3& p)
-  {
-    const Vec3 n = (t.P[1] - t.P[0]).cross(t.P[2] - t.P[0]);
-    const double all = n.squaredNorm();
-    if (!(all > 0.0))
-    {
-      return (t.UV[0] + t.UV[1] + t.UV[2]) / 3.0;
-    }
-    const double b = std::clamp((p - t.P[0]).cross(t.P[2] - t.P[0]).dot(n) / all, 0.0, 1.0);
-    const double c = std::clamp((t.P[1] - t.P[0]).cross(p - t.P[0]).dot(n) / all, 0.0, 1.0);
-    const Vec2 uv = t.UV[0] + b * (t.UV[1] - t.UV[0]) + c * (t.UV[2] - t.UV[0]);
-    return uv.cwiseMax(0.0).cwiseMin(1.0);
-  }
-
-  std::vector<Item> Items;
-  BoxTree Tree;
-};
 
 class Partitioner
 {
@@ -482,7 +386,7 @@ private:
         continue;
       }
       this->Out.FoldedTriangles += folded[q];
-      this->Map.add(local[q], uv[q], q);
+      this->Map.add(local[q].Mesh, uv[q], q);
     }
     for (Index f = 0; f < this->Cut.Surface.faces(); ++f)
     {
@@ -499,6 +403,7 @@ private:
   {
     Partition& p = this->Out.Points;
     const auto n = static_cast<std::int64_t>(this->Points.size());
+    const double on = OnMesh * diagonalOf(this->Input.Points);
     parallelFor(0, n, 1000,
       [&](std::int64_t begin, std::int64_t end)
       {
@@ -506,7 +411,7 @@ private:
         {
           const Vec3 facing =
             this->Options.Facing.empty() ? Vec3(Vec3::Zero()) : this->Options.Facing[i];
-          const QuadHit hit = this->Map.find(this->Points[i], facing);
+          const QuadHit hit = this->Map.find(this->Points[i], facing, on);
           p.Distance[i] = std::sqrt(hit.SquaredDistance);
           if (hit.Quad >= 0)
           {
@@ -532,10 +437,7 @@ private:
   void markBoundary()
   {
     Partition& p = this->Out.Points;
-    Box box;
-    std::for_each(
-      this->Input.Points.begin(), this->Input.Points.end(), [&](const Vec3& x) { box.add(x); });
-    const double near = 1e-9 * (box.Max - box.Min).norm();
+    const double near = 1e-9 * diagonalOf(this->Input.Points);
     std::vector<std::uint8_t> boundary(p.QuadId.size(), 0);
     bool any = false;
     for (std::size_t i = 0; i < p.QuadId.size(); ++i)

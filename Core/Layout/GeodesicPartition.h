@@ -7,7 +7,7 @@ namespace bsr
 struct GeodesicOptions
 {
   /// One vector a point, or empty: a point takes the nearest triangle whose normal makes less than
-  /// 90 degrees with it.
+  /// 90 degrees with it. Points of the mesh itself take their own place.
   std::vector<Vec3> Facing;
   bool Straighten = true; ///< geodesics; else the paths of edges that they start from
   int StretchRounds = 3;  ///< of the parametrization, see squareMap

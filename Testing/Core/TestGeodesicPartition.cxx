@@ -257,6 +257,18 @@ TEST(GeodesicPartition, TakesOtherPointsAndTheirNormals)
   EXPECT_NE(p.Points.QuadId[1], p.Points.QuadId[2]);
 }
 
+TEST(GeodesicPartition, PointsOfTheMeshStayWhereTheyAreWithWrongNormals)
+{
+  const TriangleMesh sphere = bsrtest::icosphere(3);
+  GeodesicOptions o;
+  for (const Vec3& p : sphere.Points)
+  {
+    o.Facing.emplace_back(-p);
+  }
+  const GeodesicPartition p = partitioned(sphere.Points, sphere, sphereQuads(2), o);
+  EXPECT_LT(p.Points.Max, 1e-6);
+}
+
 TEST(GeodesicPartition, DoesNotDependOnThreads)
 {
   const TriangleMesh sphere = bsrtest::icosphere(3);

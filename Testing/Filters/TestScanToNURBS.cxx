@@ -4,10 +4,14 @@
 #include <vtkAppendPolyData.h>
 #include <vtkCellData.h>
 #include <vtkFeatureEdges.h>
+#include <vtkFlyingEdges3D.h>
+#include <vtkImplicitBoolean.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
+#include <vtkSampleFunction.h>
 #include <vtkSphereSource.h>
+#include <vtkSuperquadric.h>
 #include <vtkTable.h>
 
 using bsrtest::ErrorLog;
@@ -112,6 +116,39 @@ TEST(ScanToNURBSFilter, LeavesSpecksOut)
   expectModel(filter, 1e-3, 2.0);
   EXPECT_EQ(
     bsrtest::fieldValue(filter->GetOutputDataObject(vtkScanToNURBS::REPORT), "DroppedParts"), 1.0);
+}
+
+TEST(ScanToNURBSFilter, TakesMoreQuadsWhereTooFewWereAskedFor)
+{
+  // A solid with three tunnels cannot be had from 12 quads.
+  vtkNew<vtkSampleFunction> sample;
+  vtkNew<vtkImplicitBoolean> body;
+  body->SetOperationTypeToUnion();
+  for (const double x : {0.0, 2.0, 4.0})
+  {
+    vtkNew<vtkSuperquadric> ring;
+    ring->ToroidalOn();
+    ring->SetThickness(0.4);
+    ring->SetSize(1.3);
+    ring->SetCenter(x, 0.0, 0.0);
+    body->AddFunction(ring);
+  }
+  sample->SetImplicitFunction(body);
+  sample->SetModelBounds(-2.0, 6.0, -2.0, 2.0, -2.0, 2.0);
+  sample->SetSampleDimensions(100, 50, 50);
+  vtkNew<vtkFlyingEdges3D> surface;
+  surface->SetInputConnection(sample->GetOutputPort());
+  surface->SetValue(0, 0.0);
+  vtkNew<vtkScanToNURBS> filter;
+  filter->SetInputConnection(surface->GetOutputPort());
+  filter->SetNumberOfQuads(12);
+  ErrorLog log(filter);
+  filter->Update();
+  EXPECT_TRUE(log.empty()) << log.text();
+  expectModel(filter, 2e-2, -4.0);
+  auto* report = filter->GetOutputDataObject(vtkScanToNURBS::REPORT);
+  EXPECT_EQ(bsrtest::fieldValue(report, "FailedQuads"), 0.0);
+  std::cout << "rounds " << bsrtest::fieldValue(report, "MoreQuadsRounds") << "\n";
 }
 
 TEST(ScanToNURBSFilter, BadInputGivesOneErrorAndNoOutput)
