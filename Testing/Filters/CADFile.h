@@ -97,6 +97,19 @@ inline void expectSolid(const bsr::SplineModel& m, const TopoDS_Shape& shape, in
   EXPECT_NEAR(volumeOf(shape), volume, 1e-6 * volume);
 }
 
+/// The file holds one valid open shell of the model's faces.
+inline void expectOpenShell(const bsr::SplineModel& m, const TopoDS_Shape& shape)
+{
+  ASSERT_FALSE(shape.IsNull());
+  EXPECT_EQ(countOf(shape, TopAbs_SOLID), 0);
+  EXPECT_EQ(countOf(shape, TopAbs_FACE), static_cast<int>(m.Patches.size()));
+  EXPECT_TRUE(BRepCheck_Analyzer(shape).IsValid());
+  ASSERT_EQ(countOf(shape, TopAbs_SHELL), 1);
+  for (TopExp_Explorer it(shape, TopAbs_SHELL); it.More(); it.Next())
+  {
+    EXPECT_FALSE(BRep_Tool::IsClosed(TopoDS::Shell(it.Current())));
+  }
+}
 } // namespace bsrtest
 
 #endif
