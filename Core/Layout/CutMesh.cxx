@@ -610,8 +610,8 @@ bool CutMesh::findQuad(const LayoutGraph& graph, Index quad)
   return true;
 }
 
-int CutMesh::laySides(
-  const QuadMesh& layout, const LayoutGraph& graph, const std::vector<int>& urgent)
+Result<int> CutMesh::laySides(const QuadMesh& layout, const LayoutGraph& graph,
+  const std::vector<int>& urgent, Monitor& monitor)
 {
   std::vector<Index> order;
   for (Index e = 0; e < graph.edges(); ++e)
@@ -634,6 +634,10 @@ int CutMesh::laySides(
     });
   for (const Index e : order)
   {
+    if (monitor.cancelled())
+    {
+      return Status::cancelled();
+    }
     if (!this->traceSide(layout, graph, e, true))
     {
       this->traceSide(layout, graph, e, false);

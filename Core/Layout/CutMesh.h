@@ -29,8 +29,9 @@ public:
 
   /// Lays the sides as paths of edges, shortest first but with those of `urgent` before, each in
   /// its sector between its neighbors; then finds the quads' triangles. Returns the number of quads
-  /// without a sound disc.
-  int laySides(const QuadMesh& layout, const LayoutGraph& graph, const std::vector<int>& urgent);
+  /// without a sound disc; Cancelled when the monitor, asked before each side, says so.
+  Result<int> laySides(const QuadMesh& layout, const LayoutGraph& graph,
+    const std::vector<int>& urgent, Monitor& monitor);
 
   /// Replaces a side between two sound quads by a path through the union of both, from the same
   /// first corner to the last. False, with the old side in place, where the path touches other

@@ -290,20 +290,20 @@ private:
     int least = std::numeric_limits<int>::max();
     for (int attempt = 0; attempt < Attempts && least > 0; ++attempt)
     {
-      if (this->Watch.cancelled())
-      {
-        return Status::cancelled();
-      }
       CutMesh tried = *base;
-      const int failed = tried.laySides(this->Quads, this->Graph, urgent);
+      const auto failed = tried.laySides(this->Quads, this->Graph, urgent, this->Watch);
+      if (!failed)
+      {
+        return failed.status();
+      }
       for (std::size_t h = 0; h < this->Graph.Edge.size(); ++h)
       {
         const Index e = this->Graph.Edge[h];
         urgent[e] += tried.Sides[e].empty() ? 2 : (tried.Faces[h / 4].empty() ? 1 : 0);
       }
-      if (failed < least)
+      if (*failed < least)
       {
-        least = failed;
+        least = *failed;
         this->Cut = std::move(tried);
       }
       this->Watch.progress(0.1 + 0.2 * (attempt + 1) / Attempts);

@@ -269,6 +269,28 @@ TEST(GeodesicPartition, PointsOfTheMeshStayWhereTheyAreWithWrongNormals)
   EXPECT_LT(p.Points.Max, 1e-6);
 }
 
+TEST(GeodesicPartition, CanBeCancelledAnywhere)
+{
+  struct Impatient : Monitor
+  {
+    explicit Impatient(int left) : Left(left) {}
+    bool cancelled() override { return --this->Left < 0; }
+    int Left;
+  };
+  const TriangleMesh sphere = bsrtest::icosphere(3);
+  const QuadMesh quads = sphereQuads(2);
+  Impatient patient(1 << 30);
+  ASSERT_TRUE(partitionGeodesic(sphere.Points, sphere, quads, {}, patient).isOk());
+  const int asked = (1 << 30) - patient.Left;
+  EXPECT_GT(asked, 2 * 48); // at every side, when laid and when straightened
+  for (int i = 0; i < asked; i += std::max(1, asked / 12))
+  {
+    Impatient monitor(i);
+    const auto p = partitionGeodesic(sphere.Points, sphere, quads, {}, monitor);
+    EXPECT_EQ(p.status().code(), StatusCode::Cancelled) << i;
+  }
+}
+
 TEST(GeodesicPartition, DoesNotDependOnThreads)
 {
   const TriangleMesh sphere = bsrtest::icosphere(3);
