@@ -151,7 +151,7 @@ private:
     }
     std::sort(order.begin(), order.end());
     const double before = checkLayout(this->D.Mesh).MinJacobian;
-    for (std::size_t i = 0; i < order.size() && i < 6; ++i)
+    for (std::size_t i = 0; i < order.size() && i < 6 && !this->M.cancelled(); ++i)
     {
       std::vector<Index> merged;
       LayoutDraft trial = withoutChord(this->D, chords[order[i].second], &merged);

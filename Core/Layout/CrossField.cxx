@@ -225,7 +225,12 @@ private:
       solver.factorize(m);
       return solver.info() == Eigen::Success && !this->M.cancelled();
     };
-    solver.analyzePattern(held + identity);
+    const ComplexMatrix pattern = held + identity;
+    if (this->M.cancelled())
+    {
+      return false;
+    }
+    solver.analyzePattern(pattern);
     if (this->M.cancelled() || !factor(held + 1e-4 * identity))
     {
       return false;
@@ -240,6 +245,10 @@ private:
       const ComplexVector right = pull + 1e-4 * z;
       z = solver.solve(right);
       z /= std::max(z.cwiseAbs().maxCoeff(), 1e-300);
+      if (this->M.cancelled())
+      {
+        return false;
+      }
     }
     normalize(z);
     // Diffusion over about a quad, with normalization.

@@ -83,7 +83,10 @@ public:
       }
       monitor.progress(static_cast<double>(round) / Rounds);
       this->normals();
-      this->locate();
+      if (!this->locate(monitor))
+      {
+        return Status::cancelled();
+      }
       Eigen::VectorXd step;
       if (!this->solve(step))
       {
@@ -93,6 +96,10 @@ public:
       for (int i = 0; i < Slides && round + 1 < Rounds; ++i)
       {
         this->slide();
+        if (monitor.cancelled())
+        {
+          return Status::cancelled();
+        }
       }
     }
     return Status::ok();
@@ -151,11 +158,12 @@ private:
     this->takeBack(before, this->Offset);
   }
 
-  void locate()
+  /// False: cancelled.
+  bool locate(Monitor& monitor)
   {
     const NearestQuad nearest(this->D.Mesh);
     this->Hit.resize(this->Samples.size());
-    parallelFor(0, static_cast<std::int64_t>(this->Hit.size()), 256,
+    return parallelForUntilCancelled(0, static_cast<std::int64_t>(this->Hit.size()), 512, monitor,
       [&](std::int64_t first, std::int64_t last)
       {
         Index hint = -1;

@@ -10,6 +10,8 @@ namespace bsr
 {
 namespace
 {
+constexpr int Regular = 6; ///< edges at a vertex
+
 class Remesher
 {
 public:
@@ -104,22 +106,40 @@ private:
   bool flipToRegular()
   {
     const auto count = static_cast<Index>(this->S.Vertex.size());
+    std::vector<int> valence(this->S.Points.size(), 0);
+    for (Index h = 0; h < count; ++h)
+    {
+      if (this->S.Vertex[h] >= 0)
+      {
+        ++valence[this->S.start(h)];
+      }
+    }
+    const auto excess = [&](Index v, int d)
+    { return std::abs(valence[v] + d - Regular) * std::abs(valence[v] + d - Regular); };
     for (Index h = 0; h < count; ++h)
     {
       if (this->stopped(h))
       {
         return false;
       }
-      if (this->S.Vertex[h] < 0 || h > this->S.Opposite[h] || !this->real(h) || !this->S.canFlip(h))
+      if (this->S.Vertex[h] < 0 || h > this->S.Opposite[h] || !this->real(h))
       {
         continue;
       }
-      const Index o = this->S.Opposite[h];
-      const int gain = this->excess(this->S.start(h), -1) + this->excess(this->S.end(h), -1) +
-                       this->excess(this->S.apex(h), 1) + this->excess(this->S.apex(o), 1);
-      if (gain < 0 && this->flipSound(h))
+      const std::array<Index, 4> at = {
+        this->S.start(h), this->S.end(h), this->S.apex(h), this->S.apex(this->S.Opposite[h])};
+      int gain = 0;
+      for (int k = 0; k < 4; ++k)
+      {
+        gain += excess(at[k], k < 2 ? -1 : 1) - excess(at[k], 0);
+      }
+      if (gain < 0 && this->S.canFlip(h) && this->flipSound(h))
       {
         this->S.flip(h);
+        for (int k = 0; k < 4; ++k)
+        {
+          valence[at[k]] += k < 2 ? -1 : 1;
+        }
       }
     }
     return true;
@@ -168,13 +188,6 @@ private:
       }
     }
     return false;
-  }
-  /// Change of the squared distance to the ideal valence when it changes by d.
-  int excess(Index v, int d) const
-  {
-    const int ideal = 6;
-    const int n = this->S.valence(v);
-    return (n + d - ideal) * (n + d - ideal) - (n - ideal) * (n - ideal);
   }
   static double quality(const Vec3& a, const Vec3& b, const Vec3& c)
   {
