@@ -13,13 +13,11 @@ import time
 
 from paraview import simple as pv
 from paraview import servermanager as sm
-from paraview.vtk.util.numpy_support import vtk_to_numpy
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import fiber_pictures as pictures  # noqa: E402
+from stage_views import BUILT_PLUGIN, field, print_times  # noqa: E402
 
-BUILT_PLUGIN = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "build", "lib",
-                            "BSplineReconstruction", "BSplineReconstruction.so")
 PORTS = ("model", "control net", "report", "closed surface", "layout", "raw surface")
 
 
@@ -88,22 +86,10 @@ def write_files(a, fiber):
     return paths
 
 
-def field(data, name):
-    array = data.GetFieldData().GetAbstractArray(name)
-    if array is None:
-        return None
-    if array.IsA("vtkStringArray"):
-        return [array.GetValue(i) for i in range(array.GetNumberOfValues())]
-    return vtk_to_numpy(array).ravel()
-
-
 def summary(fiber, paths, seconds):
     model, report = sm.Fetch(fiber, idx=0), sm.Fetch(fiber, idx=2)
     patches = field(model, "SplinePatches").reshape(-1, 8)[:, 0]
-    print("\nstage                   seconds")
-    for name, t in zip(field(report, "StageNames"), field(report, "StageSeconds")):
-        print("  %-20s %8.2f" % (name, t))
-    print("  %-20s %8.2f" % ("all of it", seconds))
+    print_times(report, seconds)
     print("iso value            %g" % field(report, "IsoValue")[0])
     print("closing radius       %.1f voxels" % field(report, "ClosingRadius")[0])
     print("open ends            %d" % (field(report, "OpenEnds")[0] if field(report, "OpenEnds") is not None else 0))

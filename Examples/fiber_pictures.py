@@ -1,23 +1,13 @@
 """Pictures of every stage of the fiber pipeline, as in figure 6 of Mosbach et al.; used by fiber.py."""
-import os
-
 from paraview import simple as pv
 from paraview import servermanager as sm
+
+import stage_views
 
 SIZE = [1400, 900]
 SURFACE = [0.86, 0.82, 0.74]
 INNER = [0.55, 0.68, 0.82]
 WALL = [0.93, 0.68, 0.38]
-
-
-def new_view():
-    view = pv.CreateRenderView()
-    view.ViewSize = SIZE
-    view.OrientationAxesVisibility = 0
-    view.UseColorPaletteForBackground = 0
-    view.BackgroundColorMode = "Single Color"
-    view.Background = [1, 1, 1]
-    return view
 
 
 def aim(view, bounds):
@@ -39,31 +29,17 @@ def aim(view, bounds):
     view.GetActiveCamera().Zoom(1.55)
 
 
-def show(proxy, view, color=None, array=None, edges=False, categories=False):
-    display = pv.Show(proxy, view, "GeometryRepresentation")
-    display.Representation = "Surface With Edges" if edges else "Surface"
-    if array is None:
-        display.ColorArrayName = [None, ""]
-        display.AmbientColor = display.DiffuseColor = color or SURFACE
-    else:
-        pv.ColorBy(display, array)
-        if not categories:
-            display.RescaleTransferFunctionToDataRange(False, True)
-        display.SetScalarBarVisibility(view, False)
+def show(proxy, view, color=None, array=None, edges=False):
+    display = stage_views.show(proxy, view, color or SURFACE, array, edges)
     display.Specular = 0.3
     return display
 
 
-def save(view, folder, name):
-    pv.SaveScreenshot(os.path.join(folder, name + ".png"), view, ImageResolution=SIZE)
-    pv.Delete(view)
-
-
 def picture(folder, name, bounds, paint):
-    view = new_view()
+    view = stage_views.new_view(SIZE)
     paint(view)
     aim(view, bounds)
-    save(view, folder, name)
+    stage_views.save(view, folder, name)
 
 
 def shell(model, number):
@@ -102,7 +78,7 @@ def deviation(fiber, folder, bounds):
         return
     data = sm.Fetch(measured)
     limit = 3.0 * data.GetFieldData().GetArray("RMS").GetTuple1(0) or 1.0
-    view = new_view()
+    view = stage_views.new_view(SIZE)
     display = show(measured, view, array=("POINTS", "Deviation"))
     lut = pv.GetColorTransferFunction("Deviation")
     lut.ApplyPreset("Cool to Warm (Extended)", True)
@@ -112,7 +88,7 @@ def deviation(fiber, folder, bounds):
     bar.Title, bar.ComponentTitle = "Deviation (world units)", ""
     bar.TitleColor = bar.LabelColor = [0, 0, 0]
     aim(view, bounds)
-    save(view, folder, "7_deviation_map")
+    stage_views.save(view, folder, "7_deviation_map")
     histogram = pv.Histogram(Input=measured, SelectInputArray=["POINTS", "Deviation"], BinCount=80,
                              UseCustomBinRanges=1, CustomBinRanges=[-limit, limit])
     chart = pv.CreateView("XYBarChartView")
@@ -122,7 +98,7 @@ def deviation(fiber, folder, bounds):
     bars = pv.Show(histogram, chart)
     bars.XArrayName = "bin_extents"
     bars.SeriesVisibility = ["bin_values"]
-    save(chart, folder, "8_deviation_histogram")
+    stage_views.save(chart, folder, "8_deviation_histogram")
 
 
 def save_all(volume, fiber, folder):

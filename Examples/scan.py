@@ -15,14 +15,14 @@ import time
 
 from paraview import simple as pv
 from paraview import servermanager as sm
-from paraview.vtk.util.numpy_support import vtk_to_numpy
 
-BUILT_PLUGIN = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "build", "lib",
-                            "BSplineReconstruction", "BSplineReconstruction.so")
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from stage_views import BUILT_PLUGIN, field, new_view, print_times, save, show  # noqa: E402
+
 METHODS = {"field": 0, "morse": 1}
 OPTIMIZERS = {"none": 0, "evolution": 1, "deterministic": 2}
 MODEL, REPORT, MESH, LAYOUT, POINTS, NETWORK = 0, 2, 3, 4, 5, 6
-GRAY, BLACK = [0.80, 0.80, 0.78], [0.1, 0.1, 0.1]
+GRAY, BLACK, BLUE = [0.80, 0.80, 0.78], [0.1, 0.1, 0.1], [0.72, 0.78, 0.86]
 
 
 def arguments():
@@ -80,26 +80,8 @@ def write_files(a, nurbs):
     return paths
 
 
-def show(proxy, view, color=GRAY, array=None, edges=False):
-    display = pv.Show(proxy, view, "GeometryRepresentation")
-    display.Representation = "Surface With Edges" if edges else "Surface"
-    display.BackfaceRepresentation = "Surface"
-    if array:
-        pv.ColorBy(display, array)
-        display.RescaleTransferFunctionToDataRange(False, True)
-        display.SetScalarBarVisibility(view, False)
-    else:
-        display.ColorArrayName = [None, ""]
-        display.AmbientColor = display.DiffuseColor = color
-    return display
-
-
 def picture(a, name, scan, paint):
-    view = pv.CreateRenderView()
-    view.ViewSize = [900, 900]
-    view.OrientationAxesVisibility = 0
-    view.UseColorPaletteForBackground = 0
-    view.Background = [1, 1, 1]
+    view = new_view([900, 900])
     paint(view)
     b = scan.GetDataInformation().GetBounds()
     size = max(b[1] - b[0], b[3] - b[2], b[5] - b[4])
@@ -109,8 +91,7 @@ def picture(a, name, scan, paint):
     view.CameraParallelProjection = 1
     view.ResetCamera()
     view.GetActiveCamera().Zoom(1.4)
-    pv.SaveScreenshot(os.path.join(a.output, name + ".png"), view, ImageResolution=[900, 900])
-    pv.Delete(view)
+    save(view, a.output, name)
 
 
 def pictures(a, scan, nurbs):
@@ -120,35 +101,20 @@ def pictures(a, scan, nurbs):
     radius = 0.0015 * max(diagonal[1] - diagonal[0], diagonal[3] - diagonal[2], diagonal[5] - diagonal[4])
 
     def network(view):
-        show(port(MESH), view)
-        tube = pv.Tube(Input=port(NETWORK), Radius=radius * 1.5)
-        show(tube, view, color=BLACK)
+        show(port(MESH), view, GRAY)
+        show(pv.Tube(Input=port(NETWORK), Radius=radius * 1.5), view, BLACK)
 
-    def model(view):
-        show(port(MODEL), view, color=[0.72, 0.78, 0.86])
-    picture(a, "1_scan", scan, lambda v: show(scan, v, edges=True))
-    picture(a, "2_closed", scan, lambda v: show(port(MESH), v, array=("CELLS", "Filled")))
-    picture(a, "3_layout", scan, lambda v: show(port(LAYOUT), v, edges=True))
+    picture(a, "1_scan", scan, lambda v: show(scan, v, GRAY, edges=True))
+    picture(a, "2_closed", scan, lambda v: show(port(MESH), v, GRAY, array=("CELLS", "Filled")))
+    picture(a, "3_layout", scan, lambda v: show(port(LAYOUT), v, GRAY, edges=True))
     picture(a, "4_network", scan, network)
-    picture(a, "5_patches", scan, lambda v: show(port(MODEL), v, array=("CELLS", "PatchId")))
-    picture(a, "6_model", scan, model)
-
-
-def field(data, name):
-    array = data.GetFieldData().GetAbstractArray(name)
-    if array is None:
-        return None
-    if array.IsA("vtkStringArray"):
-        return [array.GetValue(i) for i in range(array.GetNumberOfValues())]
-    return vtk_to_numpy(array).ravel()
+    picture(a, "5_patches", scan, lambda v: show(port(MODEL), v, GRAY, array=("CELLS", "PatchId")))
+    picture(a, "6_model", scan, lambda v: show(port(MODEL), v, BLUE))
 
 
 def summary(nurbs, paths, seconds):
     report = sm.Fetch(nurbs, idx=REPORT)
-    print("\nstage                   seconds")
-    for name, t in zip(field(report, "StageNames"), field(report, "StageSeconds")):
-        print("  %-20s %8.2f" % (name, t))
-    print("  %-20s %8.2f" % ("all of it", seconds))
+    print_times(report, seconds)
     print("holes                %d filled, %d left" % (field(report, "FilledHoles")[0], field(report, "LeftHoles")[0]))
     print("Euler characteristic %d" % field(report, "EulerCharacteristic")[0])
     print("patches              %d" % report.GetNumberOfRows())
