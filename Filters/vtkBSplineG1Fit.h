@@ -80,7 +80,8 @@ public:
   {
     NO_WEIGHTS = 0,
     EVOLUTION_STRATEGY,
-    DETERMINISTIC
+    DETERMINISTIC,
+    CONTROL_POINTS
   };
 
   ///@{
@@ -170,8 +171,9 @@ public:
 
   ///@{
   /// How weights are found: NO_WEIGHTS (all 1), EVOLUTION_STRATEGY (paper 003, section 5.1) or
-  /// DETERMINISTIC (separable least squares, default).
-  vtkSetClampMacro(Optimizer, int, NO_WEIGHTS, DETERMINISTIC);
+  /// DETERMINISTIC (separable least squares, default); CONTROL_POINTS: weights stay 1, the control
+  /// points are fitted again as with the others.
+  vtkSetClampMacro(Optimizer, int, NO_WEIGHTS, CONTROL_POINTS);
   vtkGetMacro(Optimizer, int);
   ///@}
 

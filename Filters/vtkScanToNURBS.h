@@ -87,8 +87,8 @@ public:
 
   ///@{
   /// Optimize weights (NURBS) after the fit, as in vtkBSplineG1Fit: 0 none (default), 1 evolution
-  /// strategy, 2 deterministic.
-  vtkSetClampMacro(Optimizer, int, 0, 2);
+  /// strategy, 2 deterministic, 3 control points alone (weights 1).
+  vtkSetClampMacro(Optimizer, int, 0, 3);
   vtkGetMacro(Optimizer, int);
   ///@}
 

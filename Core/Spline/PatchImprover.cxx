@@ -128,7 +128,7 @@ void PatchImprover::improve(int sweep, Index p, RationalPatch& patch, FitPoint* 
     {
       gain.Generations += problem.optimize(state, Iterations);
     }
-    else if (sweep + round == 0)
+    else if (how == WeightOptimizer::EvolutionStrategy && sweep + round == 0)
     {
       history = this->evolveWeights(p, problem, state, gain);
     }

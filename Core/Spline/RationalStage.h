@@ -8,9 +8,13 @@ namespace bsr
 /// How the weights of rational patches are found.
 enum class WeightOptimizer
 {
-  None,              ///< all weights stay 1
+  None,              ///< nothing changes
   EvolutionStrategy, ///< paper 003, section 5.1
-  Deterministic ///< separable least squares, Levenberg-Marquardt steps on the projected problem
+  /// Separable least squares, Levenberg-Marquardt steps on the projected problem.
+  Deterministic,
+  /// All weights stay 1; control points are fitted again like those of the others. Tells what of
+  /// their gain is due to weights.
+  ControlPoints
 };
 
 struct RationalOptions

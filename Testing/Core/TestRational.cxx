@@ -211,6 +211,14 @@ TEST(RationalFit, OptimizersLowerTheErrorAndKeepTangentPlanes)
   EXPECT_LT(meanDistance(deterministic), 0.98 * meanDistance(none));
   EXPECT_LT(meanDistance(deterministic), 1.01 * meanDistance(evolved));
   EXPECT_GT(evolved.Shells[0].Convergence.size(), 5u);
+  // Weights of 1 with the same second fit of the control points.
+  const auto plain = fitted(p, m, rational(WeightOptimizer::ControlPoints));
+  checkSound(plain);
+  EXPECT_LT(meanDistance(plain), 0.98 * meanDistance(none));
+  for (const Vec4& c : plain.Model.ControlPoints)
+  {
+    EXPECT_EQ(c[3], 1.0);
+  }
   bool weighted = false;
   for (const Vec4& c : deterministic.Model.ControlPoints)
   {
