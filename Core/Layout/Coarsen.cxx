@@ -209,21 +209,21 @@ private:
   {
     if (this->SampleSides.empty())
     {
-      for (const Vec3& p : this->O.Samples)
+      for (const SurfaceSample& s : this->Reference.Samples)
       {
-        this->SampleSides.push_back(this->O.Side(p));
+        this->SampleSides.push_back(this->O.Side(s.Point));
       }
     }
     const NearestQuad nearest(mesh);
     return parallelReduce<double>(
-      0, static_cast<std::int64_t>(this->O.Samples.size()), 64, 0.0,
+      0, static_cast<std::int64_t>(this->Reference.Samples.size()), 64, 0.0,
       [&](std::int64_t first, std::int64_t last)
       {
         double far = 0.0;
         for (std::int64_t i = first; i < last; ++i)
         {
-          far = std::max(far,
-            std::sqrt(nearest.find(this->O.Samples[i]).SquaredDistance) / this->SampleSides[i]);
+          const double d2 = nearest.find(this->Reference.Samples[i].Point).SquaredDistance;
+          far = std::max(far, std::sqrt(d2) / this->SampleSides[i]);
         }
         return far;
       },

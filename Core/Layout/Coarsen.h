@@ -13,7 +13,6 @@ struct CoarsenOptions
   int Quads = 500;                         ///< wanted
   double Tolerance = 0.04;                 ///< of the count, relative
   std::function<double(const Vec3&)> Side; ///< wanted side of a quad at a place
-  std::vector<Vec3> Samples; ///< points of the surface from which the layout must not move away
 };
 
 /**

@@ -74,16 +74,6 @@ Status coarsenTo(const Task& task, LayoutDraft& draft, Monitor& monitor)
   CoarsenOptions options;
   options.Quads = task.Quads;
   options.Side = [&](const Vec3& p) { return task.Size.side(p, cell); };
-  const auto samples = static_cast<std::size_t>(std::max(3000, 12 * task.Quads));
-  const std::vector<Vec3>& points = task.Surface.Points;
-  const std::size_t stride = std::max<std::size_t>(1, points.size() / samples);
-  for (std::size_t i = 0; i < points.size(); i += stride)
-  {
-    if (task.Surface.Virtual[i] == 0)
-    {
-      options.Samples.push_back(points[i]);
-    }
-  }
   SubMonitor first(monitor, 0.0, 0.8);
   if (Status s = coarsenLayout(draft, task.Reference, options, first); !s)
   {

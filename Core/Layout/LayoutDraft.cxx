@@ -284,18 +284,39 @@ private:
 };
 } // namespace
 
+std::vector<PointFrame> pointFrames(const QuadMesh& mesh)
+{
+  std::vector<PointFrame> frames(mesh.Points.size());
+  for (const auto& q : mesh.Quads)
+  {
+    for (int k = 0; k < 4; ++k)
+    {
+      const Vec3& p = mesh.Points[q[k]];
+      const Vec3 e = mesh.Points[q[(k + 1) % 4]] - p;
+      PointFrame& frame = frames[q[k]];
+      frame.Normal += e.cross(mesh.Points[q[(k + 3) % 4]] - p);
+      frame.Longest = std::max(frame.Longest, e.norm());
+    }
+  }
+  return frames;
+}
+
 void LayoutDraft::project(const ReferenceSurface& reference)
 {
+  const std::vector<PointFrame> frames = pointFrames(this->Mesh);
   parallelFor(0, static_cast<std::int64_t>(this->Mesh.Points.size()), 64,
     [&](std::int64_t first, std::int64_t last)
     {
       for (std::int64_t v = first; v < last; ++v)
       {
-        if (this->Kind[v] != VertexKind::Fixed)
+        Vec3& p = this->Mesh.Points[v];
+        if (this->Kind[v] == VertexKind::Crease)
         {
-          const auto& tree =
-            this->Kind[v] == VertexKind::Crease ? reference.Creases : reference.Faces;
-          this->Mesh.Points[v] = tree.nearest(this->Mesh.Points[v]).Point;
+          p = reference.Creases.nearest(p).Point;
+        }
+        else if (this->Kind[v] == VertexKind::Free)
+        {
+          p = reference.Faces.nearestFacing(p, frames[v].Normal, frames[v].Longest).Point;
         }
       }
     });

@@ -25,9 +25,17 @@ struct LayoutDraft
 
   /// Adds boundaries and region borders to the creases, and puts these in order.
   void completeCreases();
-  /// Puts each point, by its kind, onto the reference.
+  /// Puts each point, by its kind, onto the side of the reference that its quads face.
   void project(const ReferenceSurface& reference);
 };
+
+/// What the quads around a point tell of it.
+struct PointFrame
+{
+  Vec3 Normal = Vec3::Zero(); ///< not of unit length
+  double Longest = 0.0;       ///< edge
+};
+std::vector<PointFrame> pointFrames(const QuadMesh& mesh);
 
 /// Topology and shape of a quad mesh.
 struct LayoutReport

@@ -26,6 +26,8 @@ struct Bounds
 };
 
 constexpr double GainWeight = 0.25; ///< of irregularity against the relative length of a diagonal
+constexpr double LossWeight = 20.0; ///< of squared distance, in sides of a quad
+constexpr double Patience = 0.1;    ///< a step may cost so much more than the next one in the queue
 
 struct Candidate
 {
@@ -56,12 +58,13 @@ public:
     const CoarsenOptions& options, const Bounds& bounds)
       : E(draft),
         Reference(reference),
-        Samples(options.Samples),
+        Samples(reference.Samples),
         Least(bounds.Jacobian),
         Farthest(bounds.Distance),
         Facing(bounds.Facing),
         Stamp(draft.Mesh.Quads.size(), 0),
-        Held(draft.Mesh.Quads.size())
+        Held(draft.Mesh.Quads.size()),
+        Loss(2 * draft.Mesh.Quads.size(), 0.0)
   {
     for (const Vec3& p : draft.Mesh.Points)
     {
@@ -73,6 +76,13 @@ public:
       this->onSurface(v, draft.Mesh.Points[v]);
     }
     this->assign(draft.Mesh);
+    this->Cell2 = 0.0;
+    for (const SurfaceSample& s : this->Samples)
+    {
+      const double side = options.Side(s.Point);
+      this->Cell2 += side * side / static_cast<double>(this->Samples.size());
+    }
+    this->SamplesPerQuad = std::max(1.0, static_cast<double>(this->Samples.size()) / options.Quads);
   }
 
   int count() const { return this->E.count(); }
@@ -106,7 +116,8 @@ public:
       }
       if (this->E.alive(c.Quad) && c.Stamp == this->Stamp[c.Quad])
       {
-        this->tryCollapse(c.Quad, c.Corner);
+        const double next = queue.empty() ? mostCost : std::min(mostCost, queue.top().Cost);
+        this->tryCollapse(c, next + Patience);
       }
     }
     this->Queue = nullptr;
@@ -146,7 +157,7 @@ private:
     const Index b = c[k + 2];
     const double length = (this->E.Points[a] - this->E.Points[b]).norm();
     return length / (M_SQRT1_2 * (this->Side[a] + this->Side[b])) +
-           GainWeight * this->E.collapseGain(q, k);
+           GainWeight * this->E.collapseGain(q, k) + this->Loss[2 * q + k];
   }
 
   void push(Index q)
@@ -166,12 +177,15 @@ private:
   {
     const NearestQuad nearest(mesh);
     std::vector<Index> quad(this->Samples.size());
+    this->Distance.resize(this->Samples.size());
     parallelFor(0, static_cast<std::int64_t>(quad.size()), 64,
       [&](std::int64_t first, std::int64_t last)
       {
         for (std::int64_t i = first; i < last; ++i)
         {
-          quad[i] = nearest.find(this->Samples[i]).Quad;
+          const QuadHit hit = nearest.find(this->Samples[i].Point);
+          quad[i] = hit.Quad;
+          this->Distance[i] = std::sqrt(hit.SquaredDistance);
         }
       });
     for (std::size_t i = 0; i < quad.size(); ++i)
@@ -180,41 +194,51 @@ private:
     }
   }
 
-  /// Gives the samples of quads that changed or went to those that are left; false if one is too
-  /// far from them, and farther than it was.
-  bool hold(const std::vector<Index>& before, double wasFar, const std::vector<Index>& quads)
+  /// Where the samples of quads that changed or went are now.
+  struct Holding
   {
-    std::vector<Index> samples;
+    std::vector<Index> Samples;
+    std::vector<Index> Quads;
+    std::vector<double> Distance;
+    double Far = 0.0;    ///< largest distance, relative to the side of quads
+    double Change = 0.0; ///< of the sum of squared distances, relative to squared sides
+  };
+
+  Holding held(const std::vector<Index>& before, const std::vector<Index>& quads) const
+  {
+    Holding h;
     for (const auto* list : {&before, &quads})
     {
       for (Index q : *list)
       {
-        samples.insert(samples.end(), this->Held[q].begin(), this->Held[q].end());
+        h.Samples.insert(h.Samples.end(), this->Held[q].begin(), this->Held[q].end());
       }
     }
-    unique(samples);
-    std::vector<std::pair<Index, Index>> given;
-    given.reserve(samples.size());
-    for (Index i : samples)
+    unique(h.Samples);
+    for (Index i : h.Samples)
     {
       double least = std::numeric_limits<double>::infinity();
       Index at = -1;
       for (Index q : quads)
       {
-        const double d = distanceToQuad(this->E, q, this->Samples[i]);
+        const double d = distanceToQuad(this->E, q, this->Samples[i].Point);
         if (d < least)
         {
           least = d;
           at = q;
         }
       }
+      h.Quads.push_back(at);
+      h.Distance.push_back(least);
       const double side = this->Side[this->E.Quads[at][0]];
-      if (least > std::max(this->Farthest * side, wasFar))
-      {
-        return false;
-      }
-      given.emplace_back(at, i);
+      h.Far = std::max(h.Far, least / side);
+      h.Change += (least * least - this->Distance[i] * this->Distance[i]) / this->Cell2;
     }
+    return h;
+  }
+
+  void take(const Holding& h, const std::vector<Index>& before, const std::vector<Index>& quads)
+  {
     for (const auto* list : {&before, &quads})
     {
       for (Index q : *list)
@@ -222,21 +246,23 @@ private:
         this->Held[q].clear();
       }
     }
-    for (const auto& [q, i] : given)
+    for (std::size_t i = 0; i < h.Samples.size(); ++i)
     {
-      this->Held[q].push_back(i);
+      this->Held[h.Quads[i]].push_back(h.Samples[i]);
+      this->Distance[h.Samples[i]] = h.Distance[i];
     }
-    return true;
   }
 
+  /// Largest distance of samples, relative to the side of quads.
   double farthest(const std::vector<Index>& quads) const
   {
     double far = 0.0;
     for (Index q : quads)
     {
+      const double side = this->Side[this->E.Quads[q][0]];
       for (Index i : this->Held[q])
       {
-        far = std::max(far, distanceToQuad(this->E, q, this->Samples[i]));
+        far = std::max(far, this->Distance[i] / side);
       }
     }
     return far;
@@ -298,24 +324,32 @@ private:
     return w;
   }
 
-  bool tryCollapse(Index q, int k)
+  /// Does the step, or puts it back into the queue if it costs more than `most`.
+  void tryCollapse(const Candidate& c, double most)
   {
-    std::vector<Index> ring(this->E.Quads[q].begin(), this->E.Quads[q].end());
+    std::vector<Index> ring(this->E.Quads[c.Quad].begin(), this->E.Quads[c.Quad].end());
     const std::vector<Index> old = this->quadsAt(ring);
-    const Index a = ring[k];
-    const Index b = ring[k + 2];
+    const Index a = ring[c.Corner];
+    const Index b = ring[c.Corner + 2];
     const double side = 0.5 * (this->Side[a] + this->Side[b]);
+    double& loss = this->Loss[2 * c.Quad + c.Corner];
+    const double cheap = c.Cost - loss;
     const double before = this->worst(old);
     const double far = this->farthest(old);
     this->E.begin();
-    const Index v = this->E.collapse(q, k);
-    if (v < 0 || !this->settle(v, ring, old, before, far))
+    const Index v = this->E.collapse(c.Quad, c.Corner);
+    double change = most - cheap;
+    if (v >= 0 && this->settle(v, ring, old, before, far, change))
     {
-      this->E.rollback();
-      return false;
+      this->Side[v] = side;
+      return;
     }
-    this->Side[v] = side;
-    return true;
+    this->E.rollback();
+    if (v >= 0 && change > most - cheap)
+    {
+      loss = change;
+      this->Queue->push({cheap + change, c.Quad, c.Corner, c.Stamp});
+    }
   }
 
   bool tryRotate(Index q, int k, int way)
@@ -328,7 +362,8 @@ private:
     const double before = this->worst(old);
     const double far = this->farthest(old);
     this->E.begin();
-    if (!this->E.rotate(q, k, way) || !this->settle(ring[0], ring, old, before, far))
+    double change = -GainWeight * this->E.rotateGain(q, k, way);
+    if (!this->E.rotate(q, k, way) || !this->settle(ring[0], ring, old, before, far, change))
     {
       this->E.rollback();
       return false;
@@ -336,9 +371,10 @@ private:
     return true;
   }
 
-  /// Moves the points around a change; false if a quad stays too bad.
+  /// Moves the points around a change; false if a quad stays too bad, or if what the surface is
+  /// left by costs more than `loss`, which is then set to that.
   bool settle(Index center, std::vector<Index> vertices, const std::vector<Index>& old,
-    double before, double far)
+    double before, double far, double& loss)
   {
     this->addRing(vertices, center);
     unique(vertices);
@@ -368,10 +404,22 @@ private:
       }
       now = this->worst(quads);
     }
-    if (now < bound || !this->facing(quads) || !this->hold(old, far, quads))
+    if (now < bound || !this->facing(quads))
     {
       return false;
     }
+    const Holding holding = this->held(old, quads);
+    if (holding.Far > std::max(this->Farthest, far))
+    {
+      return false;
+    }
+    const double change = LossWeight * holding.Change / this->SamplesPerQuad;
+    if (change > loss)
+    {
+      loss = change;
+      return false;
+    }
+    this->take(holding, old, quads);
     for (Index q : quads)
     {
       ++this->Stamp[q];
@@ -401,10 +449,25 @@ private:
     return true;
   }
 
+  PointFrame frame(Index v) const
+  {
+    PointFrame frame;
+    for (Index q : this->E.Around[v])
+    {
+      const auto& c = this->E.Quads[q];
+      const int k = this->E.corner(q, v);
+      const Vec3 e = this->E.Points[c[(k + 1) % 4]] - this->E.Points[v];
+      frame.Normal += e.cross(this->E.Points[c[(k + 3) % 4]] - this->E.Points[v]);
+      frame.Longest = std::max(frame.Longest, e.norm());
+    }
+    return frame;
+  }
+
   /// The place of p on the surface; notes the normal there.
   Vec3 onSurface(Index v, const Vec3& p)
   {
-    const auto hit = this->Reference.Faces.nearest(p);
+    const PointFrame frame = this->frame(v);
+    const auto hit = this->Reference.Faces.nearestFacing(p, frame.Normal, frame.Longest);
     this->Normal[v] = this->Reference.Faces.normal(hit.Triangle);
     return this->E.Kind[v] == VertexKind::Crease ? this->Reference.Creases.nearest(p).Point
                                                  : hit.Point;
@@ -441,23 +504,15 @@ private:
     {
       return;
     }
-    Vec3 normal = Vec3::Zero();
-    double step = 0.0;
-    for (Index q : this->E.Around[v])
-    {
-      const auto& c = this->E.Quads[q];
-      const int k = this->E.corner(q, v);
-      const Vec3 e = this->E.Points[c[(k + 1) % 4]] - this->E.Points[v];
-      normal += e.cross(this->E.Points[c[(k + 3) % 4]] - this->E.Points[v]);
-      step = std::max(step, 0.3 * e.norm());
-    }
-    if (!(normal.norm() > 0.0))
+    const PointFrame frame = this->frame(v);
+    if (!(frame.Normal.norm() > 0.0))
     {
       return;
     }
+    double step = 0.3 * frame.Longest;
     this->E.move(v, this->E.Points[v]);
-    const Vec3 x = normal.unitOrthogonal();
-    const Vec3 y = normal.normalized().cross(x);
+    const Vec3 x = frame.Normal.unitOrthogonal();
+    const Vec3 y = frame.Normal.normalized().cross(x);
     const Vec3 origin = this->E.Points[v];
     const double start = this->worst(this->E.Around[v]);
     double best = start;
@@ -488,7 +543,7 @@ private:
 
   QuadEditor E;
   const ReferenceSurface& Reference;
-  const std::vector<Vec3>& Samples;
+  const std::vector<SurfaceSample>& Samples;
   double Least;
   double Farthest;
   double Facing;
@@ -496,6 +551,10 @@ private:
   std::vector<Vec3> Normal; ///< of the surface, per point
   std::vector<std::uint32_t> Stamp;
   std::vector<std::vector<Index>> Held; ///< samples nearest to each quad
+  std::vector<double> Distance;         ///< of each sample
+  std::vector<double> Loss;             ///< last known, of the two collapses of each quad
+  double Cell2 = 1.0;                   ///< squared side of quads, mean over the samples
+  double SamplesPerQuad = 1.0;          ///< of the count wanted
   std::priority_queue<Candidate>* Queue = nullptr;
 };
 } // namespace bsr::coarsening

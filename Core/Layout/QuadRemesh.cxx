@@ -264,7 +264,8 @@ Status addComponent(TriangleSurface& s, int quads, double share, const QuadRemes
     }
   }
   layout.Seconds.Decimation += clock.lap();
-  const ReferenceSurface reference(s);
+  ReferenceSurface reference(s);
+  reference.Samples = surfaceSamples(s, 400 + 12 * quads);
   SubMonitor laying(monitor, 0.4, 1.0);
   auto found = speck ? Result<FieldLayout>(FieldLayout{boxLayout(s), LayoutStage::Box})
                      : layOut(s, reference, quads, options, field, layout, laying);

@@ -1,5 +1,7 @@
 #include "Layout/RelaxLayout.h"
 
+#include "Layout/Attraction.h"
+
 #include "Common/Parallel.h"
 
 #include <Eigen/Geometry>
@@ -13,6 +15,9 @@ namespace bsr
 namespace
 {
 constexpr double GoodJacobian = 0.35;
+constexpr double MendedJacobian = 0.5; ///< points of worse quads look for better places
+constexpr double LeastPull = 0.35;     ///< of the surface on the points, where it draws them little
+constexpr double MorePull = 10.0; ///< by how far along the surface, relative to the longest edge
 
 class Relaxer
 {
@@ -30,7 +35,7 @@ public:
   }
 
   /// One step of every vertex towards the rectangles its quads ask for.
-  void relaxOnce(double share, bool guarded)
+  void relaxOnce(double share, bool guarded, bool attracted)
   {
     const std::vector<Vec3> before = this->Draft.Mesh.Points;
     this->measure();
@@ -44,6 +49,10 @@ public:
         }
       });
     std::vector<Vec3> moved = this->Draft.Mesh.Points;
+    if (attracted && !this->Reference.Samples.empty())
+    {
+      this->attract(moved);
+    }
     parallelFor(0, static_cast<std::int64_t>(moved.size()), 64,
       [&](std::int64_t first, std::int64_t last)
       {
@@ -55,7 +64,7 @@ public:
             sum += asked[c.Quad][c.At];
           }
           const Vec3 mean = sum / static_cast<double>(this->Around[v].size());
-          moved[v] += share * (mean - moved[v]);
+          moved[v] += share * (mean - this->Draft.Mesh.Points[v]);
         }
       });
     for (std::size_t v = 0; v < moved.size(); ++v)
@@ -90,7 +99,7 @@ public:
     for (std::size_t v = 0; v < this->Around.size(); ++v)
     {
       const auto i = static_cast<Index>(v);
-      if (this->Draft.Kind[v] != VertexKind::Fixed && this->worst(i) < GoodJacobian)
+      if (this->Draft.Kind[v] != VertexKind::Fixed && this->worst(i) < MendedJacobian)
       {
         moves += this->search(i);
       }
@@ -131,6 +140,21 @@ private:
           }
         }
       }
+    }
+  }
+
+  /// Adds the way to where the surface draws the points: all of it where they slipped off.
+  void attract(std::vector<Vec3>& moved)
+  {
+    const std::vector<Vec3> pull =
+      attraction(this->Draft.Mesh, this->Reference.Samples, this->Nearest);
+    const std::vector<PointFrame> frames = pointFrames(this->Draft.Mesh);
+    for (std::size_t v = 0; v < moved.size(); ++v)
+    {
+      const Vec3 n = frames[v].Normal.normalized();
+      const double along = (pull[v] - n.dot(pull[v]) * n).norm();
+      const double share = LeastPull + MorePull * along / std::max(frames[v].Longest, 1e-300);
+      moved[v] += std::min(share, 1.0) * pull[v];
     }
   }
 
@@ -181,27 +205,28 @@ private:
     return w;
   }
 
-  Vec3 onSurface(Index v, const Vec3& p) const
+  Vec3 onSurface(Index v, const Vec3& p, const PointFrame& frame) const
   {
-    return this->Draft.Kind[v] == VertexKind::Crease ? this->Reference.Creases.nearest(p).Point
-                                                     : this->Reference.Faces.nearest(p).Point;
+    return this->Draft.Kind[v] == VertexKind::Crease
+             ? this->Reference.Creases.nearest(p).Point
+             : this->Reference.Faces.nearestFacing(p, frame.Normal, frame.Longest).Point;
   }
 
   int search(Index v)
   {
     Vec3& p = this->Draft.Mesh.Points[v];
-    Vec3 normal = Vec3::Zero();
-    double step = 0.0;
+    PointFrame frame;
     for (const Corner& c : this->Around[v])
     {
       const auto& q = this->Draft.Mesh.Quads[c.Quad];
       const Vec3 e = this->Draft.Mesh.Points[q[(c.At + 1) % 4]] - p;
       const Vec3 f = this->Draft.Mesh.Points[q[(c.At + 3) % 4]] - p;
-      normal += e.cross(f);
-      step = std::max(step, 0.3 * e.norm());
+      frame.Normal += e.cross(f);
+      frame.Longest = std::max(frame.Longest, e.norm());
     }
-    const Vec3 x = normal.unitOrthogonal();
-    const Vec3 y = normal.normalized().cross(x);
+    double step = 0.3 * frame.Longest;
+    const Vec3 x = frame.Normal.unitOrthogonal();
+    const Vec3 y = frame.Normal.normalized().cross(x);
     double best = this->worst(v);
     int moves = 0;
     for (int round = 0; round < 6; ++round)
@@ -211,7 +236,7 @@ private:
       for (int k = 0; k < 8; ++k)
       {
         const double angle = k * M_PI / 4.0;
-        p = this->onSurface(v, from + step * (std::cos(angle) * x + std::sin(angle) * y));
+        p = this->onSurface(v, from + step * (std::cos(angle) * x + std::sin(angle) * y), frame);
         const double w = this->worst(v);
         if (w > best + 1e-6)
         {
@@ -229,7 +254,8 @@ private:
   LayoutDraft& Draft;
   const ReferenceSurface& Reference;
   std::vector<std::vector<Corner>> Around;
-  std::vector<double> Side; ///< per quad
+  std::vector<double> Side;   ///< per quad
+  std::vector<Index> Nearest; ///< quad of each sample
 };
 } // namespace
 
@@ -276,6 +302,7 @@ void relaxPart(LayoutDraft& draft, const ReferenceSurface& reference,
   {
     std::vector<Vec3> sum(p.size(), Vec3::Zero());
     std::vector<double> weight(p.size(), 0.0);
+    std::vector<PointFrame> frames(p.size());
     for (Index q : quads)
     {
       const auto& c = draft.Mesh.Quads[q];
@@ -284,6 +311,9 @@ void relaxPart(LayoutDraft& draft, const ReferenceSurface& reference,
       {
         sum[c[k]] += asked[k];
         weight[c[k]] += 1.0;
+        const Vec3 e = p[c[(k + 1) % 4]] - p[c[k]];
+        frames[c[k]].Normal += e.cross(p[c[(k + 3) % 4]] - p[c[k]]);
+        frames[c[k]].Longest = std::max(frames[c[k]].Longest, e.norm());
       }
     }
     parallelFor(0, static_cast<std::int64_t>(points.size()), 32,
@@ -294,9 +324,10 @@ void relaxPart(LayoutDraft& draft, const ReferenceSurface& reference,
           const Index v = points[n];
           if (moving[v] != 0 && weight[v] > 0.0)
           {
-            const auto& tree =
-              draft.Kind[v] == VertexKind::Crease ? reference.Creases : reference.Faces;
-            p[v] = tree.nearest(0.3 * p[v] + 0.7 * sum[v] / weight[v]).Point;
+            const Vec3 to = 0.3 * p[v] + 0.7 * sum[v] / weight[v];
+            p[v] = draft.Kind[v] == VertexKind::Crease
+                     ? reference.Creases.nearest(to).Point
+                     : reference.Faces.nearestFacing(to, frames[v].Normal, frames[v].Longest).Point;
           }
         }
       });
@@ -319,7 +350,7 @@ Status relaxLayout(LayoutDraft& draft, const ReferenceSurface& reference, int it
     }
     for (int i = 0; i < iterations; ++i)
     {
-      relaxer.relaxOnce(0.7, guarded);
+      relaxer.relaxOnce(0.7, guarded, i % 2 == 0);
       if (monitor.cancelled())
       {
         return Status::cancelled();

@@ -288,6 +288,43 @@ private:
 };
 } // namespace
 
+std::vector<SurfaceSample> surfaceSamples(const TriangleSurface& s, int count)
+{
+  double total = 0.0;
+  for (Index f = 0; f < s.faces(); ++f)
+  {
+    total += s.alive(f) && !s.hole(f) ? s.areaNormal(f).norm() : 0.0;
+  }
+  std::vector<SurfaceSample> samples;
+  double area = 0.0;
+  for (Index f = 0; f < s.faces() && total > 0.0; ++f)
+  {
+    if (!s.alive(f) || s.hole(f))
+    {
+      continue;
+    }
+    const Vec3 n = s.areaNormal(f);
+    const double own = n.norm();
+    area += own;
+    const auto c = s.corners(f);
+    while (own > 0.0 && static_cast<double>(samples.size()) + 0.5 < count * area / total)
+    {
+      // A sequence of low discrepancy, folded into the triangle (Roberts 2018).
+      const auto i = static_cast<double>(samples.size() + 1);
+      double x = std::fmod(0.7548776662466927 * i, 1.0);
+      double y = std::fmod(0.5698402909980532 * i, 1.0);
+      if (x + y > 1.0)
+      {
+        x = 1.0 - x;
+        y = 1.0 - y;
+      }
+      const Vec3& a = s.Points[c[0]];
+      samples.push_back({a + x * (s.Points[c[1]] - a) + y * (s.Points[c[2]] - a), n / own});
+    }
+  }
+  return samples;
+}
+
 ReferenceSurface::ReferenceSurface(const TriangleSurface& s)
 {
   std::vector<std::array<Index, 3>> faces;

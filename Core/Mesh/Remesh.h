@@ -9,12 +9,23 @@
 
 namespace bsr
 {
+/// A point of a surface and the unit normal there.
+struct SurfaceSample
+{
+  Vec3 Point;
+  Vec3 Normal;
+};
+
+/// About `count` samples, evenly spread over the area.
+std::vector<SurfaceSample> surfaceSamples(const TriangleSurface& s, int count);
+
 /// What vertices of a layout are projected onto: the surface and, for those on creases, the
 /// creases.
 struct ReferenceSurface
 {
   TriangleTree Faces;
   TriangleTree Creases;
+  std::vector<SurfaceSample> Samples; ///< from which layouts must not move away; may be empty
 
   ReferenceSurface() = default;
   explicit ReferenceSurface(const TriangleSurface& s);

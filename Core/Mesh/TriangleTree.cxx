@@ -114,12 +114,12 @@ Index TriangleTree::build(
   return id;
 }
 
-NearestOnTriangle TriangleTree::nearest(const Vec3& p) const
+template <class Allowed>
+void TriangleTree::search(const Vec3& p, NearestOnTriangle& best, const Allowed& allowed) const
 {
-  NearestOnTriangle best;
   if (this->Nodes.empty())
   {
-    return best;
+    return;
   }
   std::array<std::pair<Index, double>, 96> stack;
   int top = 0;
@@ -138,7 +138,7 @@ NearestOnTriangle TriangleTree::nearest(const Vec3& p) const
       const Vec3 q =
         nearestOnTriangle(p, this->Points[t[0]], this->Points[t[1]], this->Points[t[2]]);
       const double d = (q - p).squaredNorm();
-      if (d < best.SquaredDistance)
+      if (d < best.SquaredDistance && allowed(t))
       {
         best = {this->Order[i], q, d};
       }
@@ -157,7 +157,27 @@ NearestOnTriangle TriangleTree::nearest(const Vec3& p) const
       stack[top++] = b;
     }
   }
+}
+
+NearestOnTriangle TriangleTree::nearest(const Vec3& p) const
+{
+  NearestOnTriangle best;
+  this->search(p, best, [](const std::array<Index, 3>&) { return true; });
   return best;
+}
+
+NearestOnTriangle TriangleTree::nearestFacing(
+  const Vec3& p, const Vec3& direction, double most) const
+{
+  NearestOnTriangle best;
+  best.SquaredDistance = most * most;
+  this->search(p, best,
+    [&](const std::array<Index, 3>& t)
+    {
+      const Vec3& a = this->Points[t[0]];
+      return (this->Points[t[1]] - a).cross(this->Points[t[2]] - a).dot(direction) > 0.0;
+    });
+  return best.Triangle >= 0 ? best : this->nearest(p);
 }
 
 Vec3 TriangleTree::normal(Index triangle) const

@@ -29,6 +29,9 @@ public:
 
   bool empty() const { return this->Triangles.empty(); }
   NearestOnTriangle nearest(const Vec3& p) const;
+  /// The same among triangles whose normal makes less than 90 degrees with `direction`, so that
+  /// the other side of a thin wall is not taken; where there is none within `most`, among all.
+  NearestOnTriangle nearestFacing(const Vec3& p, const Vec3& direction, double most) const;
   /// Unit normal of a triangle (zero for degenerate ones).
   Vec3 normal(Index triangle) const;
 
@@ -41,6 +44,8 @@ private:
     Index Count = 0; ///< triangles of a leaf, 0 for inner nodes (first child: the next node)
   };
 
+  template <class Allowed>
+  void search(const Vec3& p, NearestOnTriangle& best, const Allowed& allowed) const;
   Index build(std::vector<Index>& order, const std::vector<Vec3>& centers, Index first, Index last);
   void grow(Node& node, Index triangle) const;
 
