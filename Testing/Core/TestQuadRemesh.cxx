@@ -1,3 +1,4 @@
+#include "Layout/Attraction.h"
 #include "Layout/QuadRemesh.h"
 
 #include <gtest/gtest.h>
@@ -305,6 +306,49 @@ TEST(QuadRemesh, FitRelaxationHalvesTheDistance)
   EXPECT_EQ(fitted->Mesh.Quads, on->Mesh.Quads);
   EXPECT_LT(fitted->Distance.Mean, 0.7 * on->Distance.Mean);
   EXPECT_LT(fitted->Distance.Maximum, on->Distance.Maximum);
+}
+
+TEST(QuadRemesh, TheSurfaceDrawsPointsThatSlippedOff)
+{
+  QuadMesh square;
+  square.Points = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)};
+  square.Quads = {{0, 1, 2, 3}};
+  square.Region = {0};
+  std::vector<SurfaceSample> samples;
+  for (int i = 0; i < 100; ++i)
+  {
+    samples.push_back({Vec3(0.05 + 0.1 * (i % 10), 0.05 + 0.1 * (i / 10), 0), Vec3(0, 0, 1)});
+  }
+  std::vector<Index> quads;
+  for (const Vec3& pull : attraction(square, samples, quads))
+  {
+    EXPECT_LT(pull.norm(), 1e-12);
+  }
+  // The surface goes on by half a side behind points 2 and 3, and has another side.
+  for (int i = 0; i < 50; ++i)
+  {
+    const Vec3 p(0.05 + 0.1 * (i % 10), 1.05 + 0.1 * (i / 10), 0);
+    samples.push_back({p, Vec3(0, 0, 1)});
+    samples.push_back({p - Vec3(0, 3, 0.2), Vec3(0, 0, -1)});
+  }
+  const std::vector<Vec3> pull = attraction(square, samples, quads);
+  EXPECT_LT(pull[0].norm() + pull[1].norm(), 1e-12);
+  EXPECT_GT(pull[2].y(), 0.1);
+  EXPECT_GT(pull[3].y(), 0.1);
+}
+
+TEST(QuadRemesh, PointsStayOnTheirSideOfAThinWall)
+{
+  // Sheets at z = 0 and z = 0.1, which face away from each other.
+  const TriangleTree tree({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 0.1),
+                            Vec3(1, 0, 0.1), Vec3(0, 1, 0.1)},
+    {{0, 2, 1}, {3, 4, 5}});
+  const Vec3 p(0.3, 0.3, 0.02);
+  EXPECT_EQ(tree.nearest(p).Triangle, 0);
+  EXPECT_EQ(tree.nearestFacing(p, Vec3(0, 0, 1), 1.0).Triangle, 1);
+  EXPECT_EQ(tree.nearestFacing(p, Vec3(0, 0, -1), 1.0).Triangle, 0);
+  EXPECT_EQ(tree.nearestFacing(p, Vec3(0, 0, 1), 0.05).Triangle, 0); // none so near: any
+  EXPECT_EQ(tree.nearestFacing(p, Vec3(1, 0, 0), 1.0).Triangle, 0);
 }
 
 TEST(QuadRemesh, IsDeterministic)
