@@ -110,7 +110,7 @@ bsr::Status simplify(
   bsr::DecimateOptions options;
   options.Target = static_cast<bsr::Index>(TrianglesPerPoint * points);
   bsr::SubMonitor decimating(monitor, 0.4, 1.0);
-  if (const bsr::Status s = bsr::decimate(parts->front(), options, decimating); !s)
+  if (bsr::Status s = bsr::decimate(parts->front(), options, decimating); !s)
   {
     return s;
   }

@@ -48,7 +48,7 @@ void MappedTriangles::build()
 
 QuadHit MappedTriangles::find(const Vec3& p, const Vec3& facing, double on) const
 {
-  const QuadHit hit = this->find(p, facing);
+  QuadHit hit = this->find(p, facing);
   if (facing.squaredNorm() > 0.0 && !(hit.SquaredDistance <= on * on))
   {
     const QuadHit any = this->find(p, Vec3::Zero());

@@ -224,7 +224,8 @@ private:
     double outward = 0.0;
     for (int k = 0; k <= Directions; ++k)
     {
-      const Vec3 d(k % 3 - 1.0, k / 3 % 3 - 1.0, k / 9 - 1.0);
+      const Eigen::Vector3i step(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+      const Vec3 d = step.cast<double>();
       const Index outermost = *std::max_element(part.begin(), part.end(),
         [&](Index a, Index b) { return d.dot(this->Out.Points[a]) < d.dot(this->Out.Points[b]); });
       outward += d.norm() > 0.0 ? d.normalized().dot(this->Out.Normals[outermost]) : 0.0;

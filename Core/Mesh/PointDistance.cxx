@@ -126,11 +126,11 @@ Result<DistanceGrid> sampleDistance(const OrientedPoints& points, const PointDis
       for (std::int64_t i = first; i < last; ++i)
       {
         const std::int64_t v = near[i];
-        const auto x = static_cast<double>(v % grid.Size[0]);
-        const auto y = static_cast<double>(v / grid.Size[0] % grid.Size[1]);
-        const auto z =
-          static_cast<double>(v / (static_cast<std::int64_t>(grid.Size[0]) * grid.Size[1]));
-        grid.Values[v] = static_cast<float>(distance.at(grid.Origin + grid.Voxel * Vec3(x, y, z)));
+        const std::int64_t row = v / grid.Size[0];
+        const std::int64_t slice = row / grid.Size[1];
+        const Vec3 at(static_cast<double>(v % grid.Size[0]),
+          static_cast<double>(row % grid.Size[1]), static_cast<double>(slice));
+        grid.Values[v] = static_cast<float>(distance.at(grid.Origin + grid.Voxel * at));
       }
     });
   if (!done)
