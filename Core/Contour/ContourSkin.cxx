@@ -187,7 +187,8 @@ private:
     {
       caps.push_back(b);
     }
-    Result<SkinSurface> surface = fitSkin(grid, caps, fit, monitor);
+    SubMonitor first(monitor, 0.0, 0.4);
+    Result<SkinSurface> surface = fitSkin(grid, caps, fit, first);
     if (!surface)
     {
       return this->passOn(surface.status(), contours);
@@ -199,9 +200,10 @@ private:
     const bool bad = folded > 0 || (!surface->Reached && free);
     if (relaxed && bad && fit.CountU == 0 && this->Options.Layout == SkinLayout::Automatic)
     {
-      Result<G1FitResult> complex = this->complexOf(asTrunk(piece), fit, monitor);
-      if (complex && complex->FoldedPatches == 0 &&
-          (complex->Rms <= fit.Tolerance || complex->Rms < surface->Rms || folded > 0))
+      SubMonitor rest(monitor, 0.4, 1.0);
+      Result<SkinComplexFit> complex = this->complexOf(asTrunk(piece), fit, rest);
+      if (complex && complex->Fit.FoldedPatches == 0 &&
+          (complex->Fit.Rms <= fit.Tolerance || complex->Fit.Rms < surface->Rms || folded > 0))
       {
         this->addComplex(*complex, contours, fit, false);
         return Status::ok();
@@ -238,7 +240,7 @@ private:
       }
     }
     const SkinFitOptions fit = this->fitOptions(contours);
-    Result<G1FitResult> complex = this->complexOf(piece, fit, monitor);
+    Result<SkinComplexFit> complex = this->complexOf(piece, fit, monitor);
     if (!complex)
     {
       return this->passOn(complex.status(), contours);
@@ -247,7 +249,7 @@ private:
     return Status::ok();
   }
 
-  Result<G1FitResult> complexOf(
+  Result<SkinComplexFit> complexOf(
     const SkinPiece& piece, const SkinFitOptions& fit, Monitor& monitor) const
   {
     SkinComplexOptions options;
@@ -258,9 +260,10 @@ private:
     return fitComplex(this->Out.Stack, piece, options, monitor);
   }
 
-  void addComplex(G1FitResult& complex, const std::vector<Index>& contours,
+  void addComplex(SkinComplexFit& made, const std::vector<Index>& contours,
     const SkinFitOptions& fit, bool closed)
   {
+    G1FitResult& complex = made.Fit;
     const Contour& root = this->Out.Stack.Contours[contours[0]];
     SkinReport r;
     r.Component = root.Component;
@@ -272,7 +275,13 @@ private:
     r.Rms = complex.Rms;
     r.Max = complex.Max;
     r.Reached = complex.Rms <= fit.Tolerance;
-    r.AverageError = complex.Rms * complex.Rms;
+    r.AverageError = complex.Rms * complex.Rms; // eq. 13 over all points of the data sets
+    for (const PatchReport& p : complex.Patches)
+    {
+      r.TotalError += p.Rms * p.Rms * static_cast<double>(p.Points);
+    }
+    r.AverageErrorPerControlPoint =
+      r.TotalError / static_cast<double>(complex.Model.ControlPoints.size());
     r.PointSpacing = fit.PointSpacing;
     r.NormalJump = complex.MaxNormalJump;
     r.FoldedPatches = complex.FoldedPatches;
@@ -282,7 +291,7 @@ private:
     }
     // the border lies in its plane: no cut
     const std::vector<Index> cut(contours.begin() + (closed ? 0 : 1), contours.end());
-    this->resliceModel(complex.Model, cut, r.Measures);
+    this->measureModel(complex.Model, cut, made.Ends, r.Measures);
     for (SplinePatch& p : complex.Model.Patches)
     {
       p.Side = r.Side;
@@ -290,7 +299,8 @@ private:
     this->append(complex.Model, contours[0], r);
   }
 
-  void resliceModel(const SplineModel& model, const std::vector<Index>& contours, SkinMeasures& out)
+  void measureModel(const SplineModel& model, const std::vector<Index>& contours,
+    const std::vector<LegEnd>& ends, SkinMeasures& out)
   {
     Monitor quiet;
     const auto s = sampleModel(model, {}, quiet);
@@ -306,6 +316,7 @@ private:
     if (s)
     {
       resliceErrors(this->Out.Stack, contours, s->Points, triangles, out);
+      measureEnds(this->Out.Stack, ends, s->Points, s->Normals, out);
     }
   }
 
@@ -388,7 +399,10 @@ private:
     if (!r.Reached && this->Options.Fit.CountU == 0)
     {
       this->Out.Notes.push_back({contour,
-        "and its part: the tolerance was not reached; raise ControlPointLimit or Tolerance"});
+        std::string("and its part: the tolerance was not reached; ") +
+          (r.SinglePatch ? "raise ControlPointLimit or Tolerance"
+                         : "the contours change too much from slice to slice: give slices between, "
+                           "raise Tolerance, or use BranchedContourSurface")});
     }
     this->Out.Skins.push_back(r);
   }

@@ -1,5 +1,6 @@
 #include "Contour/SkinComplex.h"
 
+#include "Contour/ColumnMap.h"
 #include "Contour/SkinCap.h"
 
 #include <algorithm>
@@ -15,6 +16,10 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 /// Shares of a contour's length over the outline of the trunk, 0 to 4, a unit a side.
 using Outline = std::vector<double>;
 constexpr int OutlineSteps = 64; ///< a side
+/// Error, in tolerances, that the finest size would hardly bring down to one: it is not the size of
+/// the patches but contours that change too much from slice to slice.
+constexpr double Hopeless = 8.0;
+constexpr double Ease = 0.1; ///< a slice, of the outline towards equal spacing
 
 class Complex
 {
@@ -76,6 +81,15 @@ public:
     return {n, high};
   }
 
+  /// The ends of all legs.
+  std::vector<LegEnd> ends() const
+  {
+    std::vector<LegEnd> all = legEnds(this->Lower);
+    const std::vector<LegEnd> upper = legEnds(this->Upper);
+    all.insert(all.end(), upper.begin(), upper.end());
+    return all;
+  }
+
   QuadMesh Mesh;
   PartitionedPoints Points;
 
@@ -102,11 +116,6 @@ private:
       shares.push_back(ring.shareAt(nodeOf(ring, static_cast<double>(k) / OutlineSteps)));
     }
     return shares;
-  }
-
-  Vec2 flatAt(const ArcCurve& curve, double share) const
-  {
-    return this->Stack.flat(curve.at(share));
   }
 
   /// Shares of the trunk's contours over one outline: from the lower data set's root on, each as
@@ -149,33 +158,29 @@ private:
     }
   }
 
+  /// Places of the outline carried to a neighboring contour by the match of the two, and eased
+  /// towards equal spacing, so that places that bays have squeezed come apart again.
   Outline nextOutline(Index from, Index to) const
   {
     const Outline& last = this->Outlines[from];
-    double best = Infinity;
-    double turn = 0.0;
-    for (int i = 0; i < 128; ++i)
+    const double start = alignedStart(this->Curves[from], last[0], this->Curves[to]);
+    MatchOptions match;
+    match.Steps = 4 * OutlineSteps;
+    match.Evenness = 0.15;
+    match.Center = true;
+    const ArcMatch m =
+      matchArcs({&this->Curves[from], last[0], 1.0}, {&this->Curves[to], start, 1.0}, match);
+    const auto count = static_cast<double>(last.size());
+    Outline next;
+    double mean = 0.0;
+    for (const double s : last)
     {
-      const double t = i / 128.0;
-      double sum = 0.0;
-      Vec2 shift = Vec2::Zero();
-      for (const double s : last)
-      {
-        const Vec2 d = this->flatAt(this->Curves[to], s + t) - this->flatAt(this->Curves[from], s);
-        sum += d.squaredNorm();
-        shift += d;
-      }
-      sum -= shift.squaredNorm() / static_cast<double>(last.size());
-      if (sum < best)
-      {
-        best = sum;
-        turn = t;
-      }
+      next.push_back(start + interpolated(m.First, m.Second, s - last[0]));
+      mean += (next.back() - static_cast<double>(next.size() - 1) / count) / count;
     }
-    Outline next = last;
-    for (double& s : next)
+    for (std::size_t k = 0; k < next.size(); ++k)
     {
-      s += turn;
+      next[k] += Ease * (mean + static_cast<double>(k) / count - next[k]);
     }
     return next;
   }
@@ -396,7 +401,7 @@ private:
 };
 } // namespace
 
-Result<G1FitResult> fitComplex(const ContourStack& stack, const SkinPiece& piece,
+Result<SkinComplexFit> fitComplex(const ContourStack& stack, const SkinPiece& piece,
   const SkinComplexOptions& options, Monitor& monitor)
 {
   if (piece.Trunk.size() < 2)
@@ -406,8 +411,12 @@ Result<G1FitResult> fitComplex(const ContourStack& stack, const SkinPiece& piece
   }
   Complex complex(stack, piece, options);
   Result<G1FitResult> best = Status::failed("the complex of patches could not be fitted");
+  const double ends[] = {0.2, 0.5, 1.0}; // of the progress
+  int round = 0;
   for (const double lines : {10.0, 7.0, 5.0})
   {
+    SubMonitor part(monitor, round > 0 ? ends[round - 1] : 0.0, ends[round]);
+    ++round;
     const std::array<int, 2> size = complex.sizes(lines);
     if (best && 2 * size[0] * size[0] + 4 * size[0] * size[1] > options.PatchLimit)
     {
@@ -418,12 +427,12 @@ Result<G1FitResult> fitComplex(const ContourStack& stack, const SkinPiece& piece
     fit.Robust = false;
     fit.CorrelatedNoise = false;
     fit.DataWeight = 3e3;
-    Result<G1FitResult> next = fitG1(complex.Points, complex.Mesh, fit, monitor);
+    Result<G1FitResult> next = fitG1(complex.Points, complex.Mesh, fit, part);
     if (!next)
     {
       if (next.status().code() == StatusCode::Cancelled)
       {
-        return next;
+        return next.status();
       }
       best = best ? std::move(best) : std::move(next);
       continue;
@@ -434,11 +443,16 @@ Result<G1FitResult> fitComplex(const ContourStack& stack, const SkinPiece& piece
     {
       best = std::move(next);
     }
-    if (best->FoldedPatches == 0 && best->Rms <= options.Tolerance)
+    if (best->FoldedPatches == 0 &&
+        (best->Rms <= options.Tolerance || best->Rms > Hopeless * options.Tolerance))
     {
       break;
     }
   }
-  return best;
+  if (!best)
+  {
+    return best.status();
+  }
+  return SkinComplexFit{std::move(*best), complex.ends()};
 }
 } // namespace bsr

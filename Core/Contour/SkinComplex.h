@@ -2,7 +2,7 @@
 
 #include "Common/Monitor.h"
 #include "Common/Status.h"
-#include "Contour/SkinGrid.h"
+#include "Contour/SkinMeasure.h"
 #include "Spline/G1Fit.h"
 
 namespace bsr
@@ -16,6 +16,12 @@ struct SkinComplexOptions
   int PatchLimit = 1200;
 };
 
+struct SkinComplexFit
+{
+  G1FitResult Fit;
+  std::vector<LegEnd> Ends; ///< of its legs, below and above
+};
+
 /**
  * A surface over a part of the stack that may end on both sides: a cube of six faces, its
  * bottom and its top the data sets of the legs below and above (arrangeGrid), its four sides the
@@ -23,6 +29,6 @@ struct SkinComplexOptions
  * (fitG1). The corners of bottom and top are vertices of three faces, so nothing degenerates there.
  * Normals point outward.
  */
-Result<G1FitResult> fitComplex(const ContourStack& stack, const SkinPiece& piece,
+Result<SkinComplexFit> fitComplex(const ContourStack& stack, const SkinPiece& piece,
   const SkinComplexOptions& options, Monitor& monitor);
 } // namespace bsr

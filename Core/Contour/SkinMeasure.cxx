@@ -55,7 +55,74 @@ std::vector<Segment> section(const std::vector<Vec3>& points,
   }
   return cut;
 }
+
+/// An end of a leg by its points, normals outward: convex where nothing of it lies above the
+/// tangent plane.
+void judgeEnd(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, double height,
+  double room, SkinMeasures& out)
+{
+  double convex = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    double above = 0.0;
+    for (const Vec3& q : points)
+    {
+      above = std::max(above, normals[i].dot(q - points[i]));
+    }
+    convex += above <= 0.05 * room ? 1.0 : 0.0;
+  }
+  if (!points.empty())
+  {
+    out.ConvexShare = std::min(out.ConvexShare, convex / static_cast<double>(points.size()));
+  }
+  if (room > 0.0)
+  {
+    out.EndHeight = std::max(out.EndHeight, height / room);
+  }
+}
 } // namespace
+
+std::vector<LegEnd> legEnds(const SkinGrid& grid)
+{
+  std::vector<LegEnd> ends;
+  for (std::size_t r = 0; r < grid.Rings.size(); ++r)
+  {
+    if (grid.Rings[r].Core)
+    {
+      ends.push_back({grid.Rings[r].Contour, grid.CapDirection[r], grid.CapRoom[r]});
+    }
+  }
+  return ends;
+}
+
+void measureEnds(const ContourStack& stack, const std::vector<LegEnd>& ends,
+  const std::vector<Vec3>& points, const std::vector<Vec3>& normals, SkinMeasures& out)
+{
+  for (const LegEnd& e : ends)
+  {
+    const Contour& c = stack.Contours[e.Contour];
+    const Slice& s = stack.Slices[c.Slice];
+    const double beside = c.Length / static_cast<double>(c.Points.size());
+    std::vector<Vec3> own;
+    std::vector<Vec3> turned;
+    double top = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+      const double height = e.Out.dot(points[i] - s.Origin);
+      const Vec2 flat = stack.flat(points[i]);
+      const bool over = height > 0.0 && height < 2.0 * e.Room && insideCurve(c.Flat, flat);
+      const auto near = [&](const Vec2& q) { return (q - flat).norm() < beside; };
+      if (over || (height > 0.0 && height < 0.25 * e.Room &&
+                    std::any_of(c.Flat.begin(), c.Flat.end(), near)))
+      {
+        own.push_back(points[i]);
+        turned.push_back(normals[i] * (normals[i].dot(e.Out) < 0.0 ? -1.0 : 1.0));
+        top = std::max(top, height);
+      }
+    }
+    judgeEnd(own, turned, top, e.Room, out);
+  }
+}
 
 void resliceErrors(const ContourStack& stack, const std::vector<Index>& contours,
   const std::vector<Vec3>& points, const std::vector<std::array<int, 3>>& triangles,
@@ -216,27 +283,14 @@ private:
         top = std::max(top, out.dot(points.back().Point - origin));
       }
     }
-    // convex where nothing of the end lies above the tangent plane
-    double convex = 0.0;
+    std::vector<Vec3> places;
+    std::vector<Vec3> normals;
     for (const SurfacePoint& p : points)
     {
-      const Vec3 n = p.normal().normalized() * (p.normal().dot(out) < 0.0 ? -1.0 : 1.0);
-      double above = 0.0;
-      for (const SurfacePoint& q : points)
-      {
-        above = std::max(above, n.dot(q.Point - p.Point));
-      }
-      convex += above <= 0.05 * this->Grid.CapRoom[r] ? 1.0 : 0.0;
+      places.push_back(p.Point);
+      normals.push_back(p.normal().normalized() * (p.normal().dot(out) < 0.0 ? -1.0 : 1.0));
     }
-    if (!points.empty())
-    {
-      this->Out.ConvexShare =
-        std::min(this->Out.ConvexShare, convex / static_cast<double>(points.size()));
-    }
-    if (this->Grid.CapRoom[r] > 0.0)
-    {
-      this->Out.EndHeight = std::max(this->Out.EndHeight, top / this->Grid.CapRoom[r]);
-    }
+    judgeEnd(places, normals, top, this->Grid.CapRoom[r], this->Out);
   }
 
   static int signChanges(const std::vector<Vec2>& curve)

@@ -24,6 +24,20 @@ void resliceErrors(const ContourStack& stack, const std::vector<Index>& contours
   const std::vector<Vec3>& points, const std::vector<std::array<int, 3>>& triangles,
   SkinMeasures& out);
 
+/// Where a leg ends: its last contour, the direction out of it, the distance to the next slice.
+struct LegEnd
+{
+  Index Contour = -1;
+  Vec3 Out = Vec3::Zero();
+  double Room = 0.0;
+};
+std::vector<LegEnd> legEnds(const SkinGrid& grid);
+
+/// EndHeight and ConvexShare of a sampled surface: of its points beyond a leg's last slice, over or
+/// beside that contour.
+void measureEnds(const ContourStack& stack, const std::vector<LegEnd>& ends,
+  const std::vector<Vec3>& points, const std::vector<Vec3>& normals, SkinMeasures& out);
+
 /// Measures a fitted skin against its contours.
 SkinMeasures measureSkin(
   const ContourStack& stack, const SkinGrid& grid, const SkinSurface& surface);

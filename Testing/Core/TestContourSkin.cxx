@@ -294,6 +294,13 @@ TEST(ContourSkin, LegsOnBothSidesMakeAClosedSurface)
   EXPECT_EQ(r.FoldedPatches, 0);
   EXPECT_LT(r.NormalJump, 1e-6);
   EXPECT_TRUE(r.Reached);
+  EXPECT_GT(r.Measures.EndHeight, 0.1);
+  EXPECT_LT(r.Measures.EndHeight, 1.0);
+  EXPECT_GT(r.Measures.ConvexShare, 0.8);
+  EXPECT_LT(r.Measures.ResliceRms, r.PointSpacing);
+  EXPECT_NEAR(r.AverageErrorPerControlPoint,
+    r.TotalError / static_cast<double>(result->Model.ControlPoints.size()), 1e-12);
+  EXPECT_NEAR(r.AverageError, r.Rms * r.Rms, 1e-12);
   for (const auto& n : result->Model.Neighbors)
   {
     for (const std::int64_t code : n)
