@@ -3,6 +3,7 @@
 #include "Contour/RelaxFolds.h"
 #include "Contour/RelaxSpace.h"
 #include "ContourStacks.h"
+#include "Crossings.h"
 #include "Spline/ModelCheck.h"
 #include "Spline/SampleModel.h"
 #include "Spline/Topology.h"
@@ -323,6 +324,43 @@ TEST(BranchedSurface, BadOptionsAndUnlinkedContours)
   const auto unlinked = makeBranchedSurface(stackOf(apart), o, monitor);
   EXPECT_EQ(unlinked.status().code(), StatusCode::InvalidInput);
   EXPECT_NE(unlinked.status().message().find("linked"), std::string::npos);
+}
+
+/// The junctions of 5.1, 5.2 and 6 made in space, with uniform and periodic knots (figure 10), and
+/// two stages (section 8, figure 11): closed, without self-intersection.
+TEST(BranchedSurface, JunctionsInSpaceDoNotIntersect)
+{
+  std::vector<Polyline> stages; // a stem above; one of its branches parts again
+  for (int s = 0; s < 3; ++s)
+  {
+    stages.push_back(ellipseAt(Vec3(-4.0, 0.0, s), 1.0, 1.2, 30));
+    stages.push_back(ellipseAt(Vec3(-1.2, 0.3, s), 1.0, 1.2, 30));
+    stages.push_back(ellipseAt(Vec3(3.0, -0.2, s), 1.4, 1.4, 30));
+    stages.push_back(ellipseAt(Vec3(-2.5, 0.1, s + 3.0), 2.4, 1.6, 40));
+    stages.push_back(ellipseAt(Vec3(2.6, -0.1, s + 3.0), 1.5, 1.5, 30));
+    stages.push_back(ellipseAt(Vec3(-0.5, 0.0, s + 6.0), 4.6, 2.2, 50));
+  }
+  for (const JunctionKind kind :
+    {JunctionKind::Superimposed, JunctionKind::SharedEdge, JunctionKind::Asymmetric})
+  {
+    for (const bool several : {false, true})
+    {
+      SCOPED_TRACE(std::to_string(static_cast<int>(kind)) + (several ? " two stages" : ""));
+      BranchedOptions o;
+      o.Kind = kind;
+      o.Caps = EndCaps::All;
+      o.Interpolate = !several; // control polygons, as in the paper
+      const Checked c = checked(several ? stages : twoLegs(), o);
+      EXPECT_EQ(c.Surface.Network.Junctions.size(), several ? 2u : 1u);
+      EXPECT_EQ(c.Report.OpenSides, 0);
+      EXPECT_EQ(c.Surface.FoldedPatches, 0);
+      EXPECT_EQ(crossings(c.Surface.Model, 2), 0);
+      if (kind != JunctionKind::Superimposed)
+      {
+        EXPECT_LT(c.Report.JunctionNormalJump, 0.01);
+      }
+    }
+  }
 }
 
 /// Any displacement of the space that relaxes folds keeps shared sides and tangent planes.

@@ -1,8 +1,8 @@
 #include "Contour/SurfaceReport.h"
+#include "Crossings.h"
 #include "PublishedSurfaces.h"
 #include "Spline/Evaluate.h"
 #include "Spline/ModelCheck.h"
-#include "Spline/SampleModel.h"
 #include "Spline/Topology.h"
 
 #include <gtest/gtest.h>
@@ -25,81 +25,6 @@ DisjointModel modelOf(const DisjointSurface& s)
   const Status valid = checkModel(m->Model);
   EXPECT_TRUE(valid.isOk()) << valid.message();
   return std::move(*m);
-}
-
-/// Whether a segment passes through the inside of a triangle.
-bool pierces(const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& t)
-{
-  const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
-  const double a = n.dot(p - t[0]);
-  const double b = n.dot(q - t[0]);
-  if (!(a * b < 0.0) || std::min(std::abs(a), std::abs(b)) < 1e-9 * n.norm())
-  {
-    return false;
-  }
-  const Vec3 x = p + a / (a - b) * (q - p);
-  for (int k = 0; k < 3; ++k)
-  {
-    const Vec3 side = t[(k + 1) % 3] - t[k];
-    if (n.dot(side.cross(x - t[k])) < 1e-6 * n.squaredNorm())
-    {
-      return false;
-    }
-  }
-  return true;
-}
-
-/// Pairs of triangles of a sampled model that cross, without those that have a point in common.
-int crossings(const SplineModel& model)
-{
-  Monitor monitor;
-  const auto mesh = sampleModel(model, {4, 0.0, false}, monitor);
-  std::vector<std::array<Vec3, 3>> all;
-  std::vector<std::pair<Vec3, Vec3>> box;
-  for (const auto& q : mesh->Polygons)
-  {
-    const auto add = [&](Index a, Index b, Index c)
-    {
-      all.push_back({mesh->Points[a], mesh->Points[b], mesh->Points[c]});
-      const auto& t = all.back();
-      box.emplace_back(t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2]));
-    };
-    add(q[0], q[1], q[2]);
-    if (q[3] >= 0)
-    {
-      add(q[0], q[2], q[3]);
-    }
-  }
-  int count = 0;
-  for (std::size_t i = 0; i < all.size(); ++i)
-  {
-    for (std::size_t j = i + 1; j < all.size(); ++j)
-    {
-      if ((box[i].first.array() > box[j].second.array()).any() ||
-          (box[j].first.array() > box[i].second.array()).any())
-      {
-        continue;
-      }
-      bool touch = false;
-      for (const Vec3& p : all[i])
-      {
-        for (const Vec3& q : all[j])
-        {
-          touch = touch || (p - q).norm() < 1e-9;
-        }
-      }
-      for (int k = 0; k < 3 && !touch; ++k)
-      {
-        if (pierces(all[i][k], all[i][(k + 1) % 3], all[j]) ||
-            pierces(all[j][k], all[j][(k + 1) % 3], all[i]))
-        {
-          ++count;
-          break;
-        }
-      }
-    }
-  }
-  return count;
 }
 
 double largestJump(const SplineModel& m)
