@@ -472,7 +472,7 @@ private:
     const JunctionHub& hub = this->J.Hubs[h];
     const auto m = static_cast<int>(hub.Seams.size());
     std::vector<Vec3> arms;
-    arms.reserve(static_cast<std::size_t>(4 * m));
+    arms.reserve(4 * static_cast<std::size_t>(m));
     for (int k = 0; k < 4 * m; ++k)
     {
       arms.push_back(this->arm(h, k));

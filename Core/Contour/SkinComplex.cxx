@@ -255,8 +255,10 @@ private:
     const int n = this->N;
     this->Mesh = {};
     const int faces = (this->has(false) ? 1 : 0) + (this->has(true) ? 1 : 0);
-    this->Mesh.Points.resize(
-      static_cast<std::size_t>(4 * n * (this->High + 1) + faces * (n - 1) * (n - 1)));
+    const auto wide = static_cast<std::size_t>(n);
+    const auto rings = static_cast<std::size_t>(this->High) + 1;
+    const auto flat = static_cast<std::size_t>(faces);
+    this->Mesh.Points.resize(4 * wide * rings + flat * (wide - 1) * (wide - 1));
     for (const bool up : {false, true})
     {
       this->FirstQuad[up ? 1 : 0] = static_cast<Index>(this->Mesh.Quads.size());
