@@ -81,11 +81,10 @@ private:
     LocalCoarsener local(this->D, this->Reference, this->O, bound);
     SubMonitor quiet(this->M, 0.0, 0.0);
     Monitor& m = quiet;
-    if (!local.collapseTo(target, bound.Cost, m))
+    if (!local.collapseTo(target, bound.Cost, m) || !local.regularize(m))
     {
       return Status::cancelled();
     }
-    local.regularize();
     this->D = local.draft();
     return relaxLayout(this->D, this->Reference, 5, m, 2);
   }

@@ -234,11 +234,13 @@ bool CutMesh::placeOnBoundary(
   for (auto& loop : loops)
   {
     std::vector<Vec3> places;
+    places.reserve(loop.size());
     for (const Index v : loop)
     {
       places.push_back(s.Points[v]);
     }
     std::vector<Vec3> wanted;
+    wanted.reserve(corners.size());
     for (const Index c : corners)
     {
       wanted.push_back(layout.Points[c]);

@@ -229,9 +229,17 @@ private:
     const Index ny = this->Topology.Kernel.freeVariables();
     std::vector<Eigen::Triplet<double>> rr;
     std::vector<Eigen::Triplet<double>> ry;
-    this->Hyy = Eigen::MatrixXd::Zero(ny, ny);
+    this->Stiffened = &factors == &this->Stiff;
+    if (!this->Stiffened)
+    {
+      this->Hyy = Eigen::MatrixXd::Zero(ny, ny);
+    }
     for (Index f = 0; f < this->S.faces(); ++f)
     {
+      if (f % 512 == 0 && this->M.cancelled())
+      {
+        return false;
+      }
       if (this->Topology.Field.Inside[f])
       {
         this->addFace(f, rr, ry);
@@ -289,7 +297,7 @@ private:
               {
                 ry.emplace_back(a, d - this->Reals, w * fd);
               }
-              else if (d >= this->Reals)
+              else if (d >= this->Reals && !this->Stiffened)
               {
                 this->Hyy(a - this->Reals, d - this->Reals) += w * fd;
               }
@@ -487,6 +495,7 @@ private:
   Factors Stiff;
   bool BaseKnown = false;
   bool StiffKnown = false;
+  bool Stiffened = false; ///< the whole unknowns are known: their own part is not needed
 };
 } // namespace
 

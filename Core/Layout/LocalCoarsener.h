@@ -124,14 +124,18 @@ public:
     return true;
   }
 
-  /// Turns edges where that makes valences more regular.
-  void regularize()
+  /// Turns edges where that makes valences more regular; false: cancelled.
+  bool regularize(Monitor& monitor)
   {
     for (int pass = 0; pass < 4; ++pass)
     {
       bool any = false;
       for (Index q = 0; q < static_cast<Index>(this->E.Quads.size()); ++q)
       {
+        if (q % 64 == 0 && monitor.cancelled())
+        {
+          return false;
+        }
         for (int k = 0; k < 4 && this->E.alive(q); ++k)
         {
           if (this->E.crease(q, k) || this->E.neighbor(q, k) < q)
@@ -147,6 +151,7 @@ public:
         break;
       }
     }
+    return true;
   }
 
 private:

@@ -41,7 +41,7 @@ public:
   Status take(const std::vector<Eigenfunction>& functions, bool count, Monitor& monitor)
   {
     std::vector<std::vector<Candidate>> found(functions.size());
-    const Status status = inGroups(functions.size(), monitor,
+    Status status = inGroups(functions.size(), monitor,
       [&](std::size_t i) { found[i] = this->layouts(functions[i], count); });
     for (auto& list : found)
     {
@@ -59,7 +59,7 @@ public:
     std::stable_sort(this->Found.begin(), this->Found.end(),
       [](const Candidate& a, const Candidate& b) { return a.Guess < b.Guess; });
     this->Found.resize(std::min(most, this->Found.size()));
-    const Status status =
+    Status status =
       inGroups(this->Found.size(), monitor, [&](std::size_t i) { this->judge(this->Found[i]); });
     std::stable_sort(this->Found.begin(), this->Found.end(),
       [](const Candidate& a, const Candidate& b) { return a.Cost < b.Cost; });

@@ -130,6 +130,7 @@ std::vector<int> shares(const std::vector<TriangleSurface>& surfaces, int quads)
   const auto n = static_cast<double>(surfaces.size());
   const int least = static_cast<int>(std::clamp(0.3 * quads / n, 6.0, 24.0));
   std::vector<double> area;
+  area.reserve(surfaces.size());
   for (const TriangleSurface& s : surfaces)
   {
     area.push_back(s.area());

@@ -93,10 +93,10 @@ public:
   }
 
   /// Moves the vertices of bad quads to better places; returns the number of moves.
-  int mend()
+  int mend(Monitor& monitor)
   {
     int moves = 0;
-    for (std::size_t v = 0; v < this->Around.size(); ++v)
+    for (std::size_t v = 0; v < this->Around.size() && (v % 64 != 0 || !monitor.cancelled()); ++v)
     {
       const auto i = static_cast<Index>(v);
       if (this->Draft.Kind[v] != VertexKind::Fixed && this->worst(i) < MendedJacobian)
@@ -357,7 +357,7 @@ Status relaxLayout(LayoutDraft& draft, const ReferenceSurface& reference, int it
       }
       monitor.progress((i + 1.0) / iterations);
     }
-    for (int i = 0; i < mending && relaxer.mend() > 0; ++i)
+    for (int i = 0; i < mending && relaxer.mend(monitor) > 0; ++i)
     {
       if (monitor.cancelled())
       {

@@ -41,6 +41,7 @@ public:
       sum[w.From] += w.Value;
     }
     std::vector<Eigen::Triplet<double>> entries;
+    entries.reserve(this->Count + this->Weights.size());
     Eigen::MatrixXd b = Eigen::MatrixXd::Zero(this->Count, 2);
     for (Index i = 0; i < this->Count; ++i)
     {

@@ -108,7 +108,8 @@ public:
     std::set<Index> done;
     while (!queue.empty())
     {
-      const auto [d, v] = queue.top();
+      const double d = queue.top().first;
+      const Index v = queue.top().second;
       queue.pop();
       if (!done.insert(v).second)
       {

@@ -626,6 +626,7 @@ bool FastMarching::bypass(std::vector<EdgePoint>& path, std::size_t i, double ma
   }
   std::sort(spokes.begin(), spokes.end());
   std::vector<EdgePoint> around;
+  around.reserve(spokes.size());
   for (const auto& [at, end] : spokes)
   {
     around.push_back({v, end, std::max(0.05, 2.0 * margin)});
