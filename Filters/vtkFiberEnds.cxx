@@ -12,6 +12,7 @@
 #include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
+#include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 
@@ -37,6 +38,23 @@ bsr::Result<std::vector<bsr::EndMouth>> mouthsFrom(vtkPolyData* raw)
   return mouths;
 }
 
+/// Points of the outer and inner wall.
+std::vector<bsr::Vec3> wallFrom(vtkPolyData* raw)
+{
+  std::vector<bsr::Vec3> wall;
+  vtkDataArray* side = raw->GetPointData()->GetArray("Side");
+  for (vtkIdType i = 0; i < raw->GetNumberOfPoints(); ++i)
+  {
+    if (!side || side->GetComponent(i, 0) <= 1.0)
+    {
+      bsr::Vec3 p;
+      raw->GetPoint(i, p.data());
+      wall.push_back(p);
+    }
+  }
+  return wall;
+}
+
 bsr::Result<bsr::FiberEnds> findEnds(vtkPolyData* surface, vtkPolyData* raw, bsr::Monitor& monitor)
 {
   const auto mesh = bsr::triangleMeshFrom(surface);
@@ -49,7 +67,7 @@ bsr::Result<bsr::FiberEnds> findEnds(vtkPolyData* surface, vtkPolyData* raw, bsr
   {
     return mouths.status();
   }
-  return bsr::findFiberEnds(*mesh, *mouths, monitor);
+  return bsr::findFiberEnds(*mesh, *mouths, wallFrom(raw), monitor);
 }
 
 void attach(const bsr::FiberEnds& ends, vtkPolyData* output)

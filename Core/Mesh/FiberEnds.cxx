@@ -1,6 +1,8 @@
 #include "Mesh/FiberEnds.h"
 
+#include "Common/Parallel.h"
 #include "Mesh/FiberRim.h"
+#include "Mesh/PointTree.h"
 #include "Mesh/RegionCut.h"
 
 #include <algorithm>
@@ -258,15 +260,49 @@ void drawToRim(TriangleMesh& mesh, const std::vector<Index>& loop, const MouthFr
   }
 }
 
+double meanEdge(const TriangleMesh& mesh)
+{
+  double sum = 0.0;
+  for (const auto& t : mesh.Triangles)
+  {
+    sum += (mesh.Points[t[1]] - mesh.Points[t[0]]).norm();
+  }
+  return sum / static_cast<double>(mesh.Triangles.size());
+}
+
+/// How far each vertex is off the wall's points, less one and a half edges; 0 where there are no
+/// points.
+std::vector<double> offWall(const TriangleMesh& mesh, const std::vector<Vec3>& wall)
+{
+  std::vector<double> off(mesh.Points.size(), 0.0);
+  if (wall.empty())
+  {
+    return off;
+  }
+  const PointTree tree(wall);
+  const double free = 1.5 * meanEdge(mesh);
+  parallelFor(0, static_cast<std::int64_t>(off.size()), 1024,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t i = begin; i < end; ++i)
+      {
+        const double distance2 = tree.nearest(mesh.Points[i]).second;
+        off[i] = std::max(0.0, std::sqrt(distance2) - free);
+      }
+    });
+  return off;
+}
+
 /// Tries to cut one end; says why not.
-std::string cutEnd(FiberEnds& ends, const EndMouth& mouth, double lean)
+std::string cutEnd(
+  FiberEnds& ends, const EndMouth& mouth, const std::vector<Vec3>& wall, double lean)
 {
   if (!(mouth.Radius > 0.0) || !(mouth.Direction.norm() > 0.0) || !mouth.Center.allFinite())
   {
     return "its radius or direction is not valid";
   }
   MouthFrame frame(mouth.Center, mouth.Direction);
-  const auto rim = findRim(ends.Surface, mouth, lean, frame);
+  const auto rim = findRim(ends.Surface, offWall(ends.Surface, wall), mouth, lean, frame);
   if (!rim)
   {
     return "the surface does not go round it";
@@ -295,8 +331,8 @@ std::string cutEnd(FiberEnds& ends, const EndMouth& mouth, double lean)
 }
 } // namespace
 
-Result<FiberEnds> findFiberEnds(
-  const TriangleMesh& closedSurface, const std::vector<EndMouth>& mouths, Monitor& monitor)
+Result<FiberEnds> findFiberEnds(const TriangleMesh& closedSurface,
+  const std::vector<EndMouth>& mouths, const std::vector<Vec3>& wall, Monitor& monitor)
 {
   if (closedSurface.Triangles.empty())
   {
@@ -312,10 +348,10 @@ Result<FiberEnds> findFiberEnds(
     {
       return Status::cancelled();
     }
-    std::string why = cutEnd(ends, mouths[m], 1.15);
+    std::string why = cutEnd(ends, mouths[m], wall, 1.15);
     for (const double lean : {1.5, 0.8})
     {
-      why = why.empty() ? why : cutEnd(ends, mouths[m], lean);
+      why = why.empty() ? why : cutEnd(ends, mouths[m], wall, lean);
     }
     if (!why.empty())
     {

@@ -135,14 +135,14 @@ Vec2 FiberRim::at(double bin) const
     (1.0 - t) * ring(this->Height, i) + t * ring(this->Height, i + 1)};
 }
 
-std::optional<FiberRim> findRim(
-  const TriangleMesh& mesh, const EndMouth& mouth, double lean, MouthFrame& frame)
+std::optional<FiberRim> findRim(const TriangleMesh& mesh, const std::vector<double>& off,
+  const EndMouth& mouth, double lean, MouthFrame& frame)
 {
-  const auto normals = wideNormals(mesh);
+  const RimSurface surface{mesh, wideNormals(mesh), off};
   std::optional<FiberRim> rim;
   for (int round = 0; round < 4; ++round)
   {
-    rim = searchRim(mesh, normals, frame, mouth.Radius, lean, nullptr);
+    rim = searchRim(surface, frame, mouth.Radius, lean, nullptr);
     if (!rim)
     {
       return rim;
@@ -160,7 +160,7 @@ std::optional<FiberRim> findRim(
   for (int round = 0; round < 2; ++round)
   {
     const FiberRim smooth = robustRim(*rim, mouth.Radius, PlainWaves, RadiusWaves);
-    const auto smoother = searchRim(mesh, normals, frame, mouth.Radius, lean, &smooth.Height);
+    const auto smoother = searchRim(surface, frame, mouth.Radius, lean, &smooth.Height);
     rim = smoother ? smoother : rim;
   }
   return robustRim(*rim, mouth.Radius, HeightWaves, RadiusWaves);

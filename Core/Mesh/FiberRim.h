@@ -58,16 +58,24 @@ struct FiberRim
   Vec2 at(double bin) const;
 };
 
+/// What a rim is sought on.
+struct RimSurface
+{
+  const TriangleMesh& Mesh;
+  std::vector<Vec3> Normals;      ///< as of wideNormals()
+  const std::vector<double>& Off; ///< how far each vertex is off the fiber's wall
+};
+
 /// Finds the rim closest to a mouth: the outermost convex edge around it, as a smooth curve from
 /// which debris and holes at the rim do not turn it away. The frame is turned to the rim's plane.
 /// `lean` weighs radius against height. Empty where the surface does not go round the mouth.
-std::optional<FiberRim> findRim(
-  const TriangleMesh& mesh, const EndMouth& mouth, double lean, MouthFrame& frame);
+std::optional<FiberRim> findRim(const TriangleMesh& mesh, const std::vector<double>& off,
+  const EndMouth& mouth, double lean, MouthFrame& frame);
 
 /// The closed sequence of rim points in a frame with the least losses and jumps; what is far from
-/// a `smooth` height, if given, counts as less far out. `normals` as of wideNormals().
-std::optional<FiberRim> searchRim(const TriangleMesh& mesh, const std::vector<Vec3>& normals,
-  const MouthFrame& frame, double radius, double lean, const RimProfile* smooth);
+/// a `smooth` height, if given, or off the wall counts as less far out.
+std::optional<FiberRim> searchRim(const RimSurface& surface, const MouthFrame& frame, double radius,
+  double lean, const RimProfile* smooth);
 
 /// Outward vertex normals, averaged over some rings of neighbors; the surface may be turned inside
 /// out, as isosurfaces of a distance that is negative inside are.

@@ -15,6 +15,7 @@ constexpr double MostLoss = 0.4;     ///< of the mouth's radius: how far within 
 constexpr double Stiffness = 0.5;    ///< of the rim against jumps
 constexpr double FreeDetour = 0.1;   ///< of the mouth's radius: from a smooth end
 constexpr double DetourCost = 3.0;   ///< of what is farther, against distance outwards
+constexpr double WebCost = 3.0;      ///< of a distance off the wall, against distance outwards
 constexpr int NormalRings = 4;       ///< that the normals are averaged over
 constexpr double LeastTurn = 0.15;   ///< cosine of axis and radius with the rim's normal
 
@@ -49,10 +50,12 @@ struct Candidate
 using Candidates = std::array<std::vector<Candidate>, Bins>;
 
 /// The outermost points of each direction where the surface turns from end to wall, `lean` weighing
-/// radius against height; what is far from a `smooth` end, if known, counts as less far out.
-Candidates rimCandidates(const TriangleMesh& mesh, const std::vector<Vec3>& normals,
-  const MouthFrame& frame, double radius, double lean, const RimProfile* smooth)
+/// radius against height; what is far from a `smooth` end, if known, or off the wall counts as less
+/// far out.
+Candidates rimCandidates(const RimSurface& surface, const MouthFrame& frame, double radius,
+  double lean, const RimProfile* smooth)
 {
+  const TriangleMesh& mesh = surface.Mesh;
   Candidates candidates;
   const double reach = std::hypot(WindowHeight, WindowRadius) * radius;
   for (std::size_t i = 0; i < mesh.Points.size(); ++i)
@@ -68,13 +71,15 @@ Candidates rimCandidates(const TriangleMesh& mesh, const std::vector<Vec3>& norm
     {
       const double bin = frame.bin(p);
       const int b = std::min(static_cast<int>(bin), Bins - 1);
-      if (normals[i].dot(frame.Axis) < LeastTurn || normals[i].dot(frame.radial(bin)) < LeastTurn)
+      if (surface.Normals[i].dot(frame.Axis) < LeastTurn ||
+          surface.Normals[i].dot(frame.radial(bin)) < LeastTurn)
       {
         continue; // wall that flares, or the face's inner border
       }
       const double detour =
         smooth ? std::max(std::abs(h - (*smooth)[b]) - FreeDetour * radius, 0.0) : 0.0;
-      candidates[b].push_back({r, h, DetourCost * detour - (lean * r + h)});
+      candidates[b].push_back(
+        {r, h, DetourCost * detour + WebCost * surface.Off[i] - (lean * r + h)});
     }
   }
   for (auto& list : candidates)
@@ -138,10 +143,10 @@ std::vector<Vec3> wideNormals(const TriangleMesh& mesh)
 }
 
 // Dynamic programming, three times around, of which the middle turns are taken.
-std::optional<FiberRim> searchRim(const TriangleMesh& mesh, const std::vector<Vec3>& normals,
-  const MouthFrame& frame, double radius, double lean, const RimProfile* smooth)
+std::optional<FiberRim> searchRim(const RimSurface& surface, const MouthFrame& frame, double radius,
+  double lean, const RimProfile* smooth)
 {
-  Candidates candidates = rimCandidates(mesh, normals, frame, radius, lean, smooth);
+  Candidates candidates = rimCandidates(surface, frame, radius, lean, smooth);
   int missing = 0;
   for (int i = 0; i < 2 * Bins; ++i)
   {

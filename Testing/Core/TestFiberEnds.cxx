@@ -73,6 +73,27 @@ std::vector<EndMouth> bothMouths()
 {
   return {{{-27.0, 0.5, 0.0}, {-1.0, 0.1, 0.0}, 7.5}, {{27.0, 0.0, 0.5}, {1.0, 0.0, 0.1}, 7.5}};
 }
+
+/// A capsule whose surface rises from the rim at x = 30 to a ridge behind it, `height` high and
+/// `width` radians to either side of y.
+TriangleMesh webbed(double width, double height)
+{
+  TriangleMesh mesh = capsule(4.0);
+  for (Vec3& p : mesh.Points)
+  {
+    const double r = std::hypot(p.y(), p.z());
+    const double across = std::max(0.0, 1.0 - std::abs(std::atan2(p.z(), p.y())) / width);
+    const double along = std::max(0.0, 1.0 - std::abs(p.x() - 23.0) / 7.0);
+    if (r > 11.5)
+    {
+      const double scale = (r + height * along * std::sqrt(across)) / r;
+      p.y() *= scale;
+      p.z() *= scale;
+    }
+  }
+  return mesh;
+}
+
 /// Root mean square and largest distance of a rim from the circle of radius 12 at |x| = 30.
 std::pair<double, double> offRim(const FiberEnds& ends, const std::vector<Index>& rim)
 {
@@ -111,7 +132,7 @@ TEST(FiberEnds, CutsBothEndsAlongTheOuterRim)
   {
     Monitor monitor;
     const TriangleMesh mesh = capsule(4.0, slant);
-    const auto ends = findFiberEnds(mesh, bothMouths(), monitor);
+    const auto ends = findFiberEnds(mesh, bothMouths(), {}, monitor);
     ASSERT_TRUE(ends);
     EXPECT_EQ(ends->Note, "");
     ASSERT_EQ(ends->Rims.size(), 2u);
@@ -147,7 +168,7 @@ TEST(FiberEnds, TheRimDoesNotDiveIntoASteepCap)
     p.x() -= share * top * (2.0 + (r > 3.0 && r < 11.5 ? 12.0 : 0.0));
   }
   Monitor monitor;
-  const auto ends = findFiberEnds(mesh, bothMouths(), monitor);
+  const auto ends = findFiberEnds(mesh, bothMouths(), {}, monitor);
   ASSERT_TRUE(ends);
   ASSERT_EQ(ends->Rims.size(), 2u) << ends->Note;
   for (const auto& rim : ends->Rims)
@@ -158,26 +179,24 @@ TEST(FiberEnds, TheRimDoesNotDiveIntoASteepCap)
 
 TEST(FiberEnds, TheRimPassesAWebOverDebris)
 {
-  TriangleMesh mesh = capsule(4.0);
-  for (Vec3& p : mesh.Points)
-  {
-    // From the rim at x = 30 the surface rises to a ridge behind it.
-    const double r = std::hypot(p.y(), p.z());
-    const double across = std::max(0.0, 1.0 - std::abs(std::atan2(p.z(), p.y())) / 0.4);
-    const double along = std::max(0.0, 1.0 - std::abs(p.x() - 23.0) / 7.0);
-    if (r > 11.5)
-    {
-      const double scale = (r + 8.0 * along * std::sqrt(across)) / r;
-      p.y() *= scale;
-      p.z() *= scale;
-    }
-  }
+  const TriangleMesh mesh = webbed(0.4, 8.0);
   Monitor monitor;
-  const auto ends = findFiberEnds(mesh, bothMouths(), monitor);
+  const auto ends = findFiberEnds(mesh, bothMouths(), {}, monitor);
   ASSERT_TRUE(ends);
   ASSERT_EQ(ends->Rims.size(), 2u) << ends->Note;
   EXPECT_LT(offRim(*ends, ends->Rims[1]).first, 1.0);
   EXPECT_LT(offRim(*ends, ends->Rims[1]).second, 2.0);
+}
+
+TEST(FiberEnds, TheWallTellsWideWebs)
+{
+  const TriangleMesh mesh = webbed(1.0, 12.0);
+  Monitor monitor;
+  const auto ends = findFiberEnds(mesh, bothMouths(), capsule(4.0).Points, monitor);
+  ASSERT_TRUE(ends);
+  ASSERT_EQ(ends->Rims.size(), 2u) << ends->Note;
+  EXPECT_LT(offRim(*ends, ends->Rims[1]).first, 1.5);
+  EXPECT_LT(offRim(*ends, ends->Rims[1]).second, 3.0);
 }
 
 TEST(FiberEnds, FindsTheRimOfAWallThickerThanItsLumenIsWide)
@@ -185,7 +204,7 @@ TEST(FiberEnds, FindsTheRimOfAWallThickerThanItsLumenIsWide)
   auto mouths = bothMouths();
   mouths[0].Radius = mouths[1].Radius = 3.8;
   Monitor monitor;
-  const auto ends = findFiberEnds(capsule(4.0), mouths, monitor);
+  const auto ends = findFiberEnds(capsule(4.0), mouths, {}, monitor);
   ASSERT_TRUE(ends);
   ASSERT_EQ(ends->Rims.size(), 2u) << ends->Note;
   for (const auto& rim : ends->Rims)
@@ -203,7 +222,7 @@ TEST(FiberEnds, MovingTheSurfaceToASmoothRimFoldsNothing)
     p.x() += p.x() > 20.0 ? 1.8 * std::sin(12.0 * a) * (p.x() - 20.0) / 10.0 : 0.0;
   }
   Monitor monitor;
-  const auto ends = findFiberEnds(mesh, bothMouths(), monitor);
+  const auto ends = findFiberEnds(mesh, bothMouths(), {}, monitor);
   ASSERT_TRUE(ends);
   ASSERT_EQ(ends->Rims.size(), 2u) << ends->Note;
   EXPECT_LT(offRim(*ends, ends->Rims[1]).first, 0.75);
@@ -221,7 +240,7 @@ TEST(FiberEnds, WorksOnASurfaceTurnedInsideOut)
     std::swap(t[1], t[2]);
   }
   Monitor monitor;
-  const auto ends = findFiberEnds(mesh, bothMouths(), monitor);
+  const auto ends = findFiberEnds(mesh, bothMouths(), {}, monitor);
   ASSERT_TRUE(ends);
   EXPECT_EQ(ends->Rims.size(), 2u) << ends->Note;
 }
@@ -229,7 +248,7 @@ TEST(FiberEnds, WorksOnASurfaceTurnedInsideOut)
 TEST(FiberEnds, NoMouthNoEnd)
 {
   Monitor monitor;
-  const auto ends = findFiberEnds(capsule(4.0), {}, monitor);
+  const auto ends = findFiberEnds(capsule(4.0), {}, {}, monitor);
   ASSERT_TRUE(ends);
   EXPECT_TRUE(ends->Rims.empty());
   EXPECT_EQ(ends->Surface.Triangles.size(), capsule(4.0).Triangles.size());
@@ -239,7 +258,7 @@ TEST(FiberEnds, LeavesOutWhatIsNotThereAndSaysSo)
 {
   Monitor monitor;
   const auto ends = findFiberEnds(capsule(4.0),
-    {{{200.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 8.0}, {{0, 0, 0}, {0, 0, 0}, 8.0}}, monitor);
+    {{{200.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 8.0}, {{0, 0, 0}, {0, 0, 0}, 8.0}}, {}, monitor);
   ASSERT_TRUE(ends);
   EXPECT_TRUE(ends->Rims.empty());
   EXPECT_NE(ends->Note.find("Mouth 1"), std::string::npos);
@@ -251,7 +270,7 @@ TEST(FiberEnds, TheSameMouthTwiceIsOneEnd)
   Monitor monitor;
   auto mouths = bothMouths();
   mouths[1] = mouths[0];
-  const auto ends = findFiberEnds(capsule(4.0), mouths, monitor);
+  const auto ends = findFiberEnds(capsule(4.0), mouths, {}, monitor);
   ASSERT_TRUE(ends);
   EXPECT_EQ(ends->Rims.size(), 1u);
 }
@@ -259,7 +278,7 @@ TEST(FiberEnds, TheSameMouthTwiceIsOneEnd)
 TEST(FiberEnds, RefusesAnEmptySurface)
 {
   Monitor monitor;
-  EXPECT_FALSE(findFiberEnds({}, bothMouths(), monitor));
+  EXPECT_FALSE(findFiberEnds({}, bothMouths(), {}, monitor));
 }
 
 TEST(RegionCut, SplitsAlongALevelAndKeepsTheTopology)
