@@ -1,7 +1,7 @@
 #include "Spline/DataBalance.h"
 
-#include "Spline/ParameterCorrection.h"
 #include "Mesh/PointTree.h"
+#include "Spline/ParameterCorrection.h"
 
 #include <cmath>
 
