@@ -43,6 +43,8 @@ def main(volume, truth, quads):
     voxel = min(walls["spacing"]) if isinstance(walls["spacing"], list) else walls["spacing"]
     print("| asked | patches a shell | outer RMS / p95 | inner RMS / p95 | s |\n|---|---|---|---|---|")
     for asked in quads:
+        image.UpdatePipeline()
+        pv.SetActiveSource(image)
         fiber = FiberReconstruction(Input=image, NumberOfQuads=asked)
         fiber.UpdatePipeline()
         cell_data = sm.Fetch(fiber, idx=0).GetCellData()
