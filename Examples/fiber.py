@@ -16,7 +16,7 @@ from paraview import servermanager as sm
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import fiber_pictures as pictures  # noqa: E402
-from stage_views import BUILT_PLUGIN, field, print_times  # noqa: E402
+from stage_views import BUILT_PLUGIN, field, print_fit, print_times  # noqa: E402
 
 PORTS = ("model", "control net", "report", "closed surface", "layout", "raw surface")
 
@@ -95,10 +95,7 @@ def summary(fiber, paths, seconds):
     print("open ends            %d" % (field(report, "OpenEnds")[0] if field(report, "OpenEnds") is not None else 0))
     print("patches              %d outer, %d inner, %d wall" % tuple((patches == s).sum() for s in range(3)))
     print("RMS to the points    %.4g (world units)" % field(report, "RMS")[0])
-    print("largest normal jump  %.2g degrees" % field(report, "MaxNormalJump")[0])
-    print("folded patches       %d" % field(report, "FoldedPatches")[0])
-    for p in paths:
-        print("%-20s %.1f kB" % (p, os.path.getsize(p) / 1024.0))
+    print_fit(report, paths)
 
 
 def main():

@@ -17,7 +17,7 @@ from paraview import simple as pv
 from paraview import servermanager as sm
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from stage_views import BUILT_PLUGIN, field, new_view, print_times, save, show  # noqa: E402
+from stage_views import BUILT_PLUGIN, field, new_view, print_fit, print_times, save, show  # noqa: E402
 
 METHODS = {"field": 0, "morse": 1}
 OPTIMIZERS = {"none": 0, "evolution": 1, "deterministic": 2}
@@ -120,10 +120,7 @@ def summary(nurbs, paths, seconds):
     print("patches              %d" % report.GetNumberOfRows())
     print("RMS                  %.3g of the diagonal" % field(report, "RelativeRMS")[0])
     print("largest distance     %.3g of the diagonal" % field(report, "RelativeMax")[0])
-    print("largest normal jump  %.2g degrees" % field(report, "MaxNormalJump")[0])
-    print("folded patches       %d" % field(report, "FoldedPatches")[0])
-    for p in paths:
-        print("%-20s %.1f kB" % (p, os.path.getsize(p) / 1024.0))
+    print_fit(report, paths)
 
 
 def main():

@@ -54,3 +54,11 @@ def print_times(report, seconds):
     for name, t in zip(field(report, "StageNames"), field(report, "StageSeconds")):
         print("  %-20s %8.2f" % (name, t))
     print("  %-20s %8.2f" % ("all of it", seconds))
+
+
+def print_fit(report, paths):
+    """How smooth the model is, and the files written."""
+    print("largest normal jump  %.2g degrees" % field(report, "MaxNormalJump")[0])
+    print("folded patches       %d" % field(report, "FoldedPatches")[0])
+    for p in paths:
+        print("%-20s %.1f kB" % (p, os.path.getsize(p) / 1024.0))

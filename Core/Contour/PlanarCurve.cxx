@@ -1,5 +1,7 @@
 #include "Contour/PlanarCurve.h"
 
+#include "Mesh/PlaneVector.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,11 +10,6 @@ namespace bsr
 {
 namespace
 {
-double cross(const Vec2& a, const Vec2& b)
-{
-  return a.x() * b.y() - a.y() * b.x();
-}
-
 struct Segment
 {
   Vec2 A, B;
@@ -23,10 +20,10 @@ bool properlyCross(const Segment& s, const Segment& t)
 {
   const Vec2 ds = s.B - s.A;
   const Vec2 dt = t.B - t.A;
-  const double a = cross(ds, t.A - s.A);
-  const double b = cross(ds, t.B - s.A);
-  const double c = cross(dt, s.A - t.A);
-  const double d = cross(dt, s.B - t.A);
+  const double a = planeCross(ds, t.A - s.A);
+  const double b = planeCross(ds, t.B - s.A);
+  const double c = planeCross(dt, s.A - t.A);
+  const double d = planeCross(dt, s.B - t.A);
   const double eps = 1e-12 * ds.norm() * dt.norm();
   return std::min(a, b) < -eps && std::max(a, b) > eps && std::min(c, d) < -eps &&
          std::max(c, d) > eps;
@@ -67,7 +64,7 @@ double signedArea(const Curve2& curve)
   double sum = 0.0;
   for (std::size_t i = 1; i + 1 < curve.size(); ++i)
   {
-    sum += cross(curve[i] - curve[0], curve[i + 1] - curve[0]);
+    sum += planeCross(curve[i] - curve[0], curve[i + 1] - curve[0]);
   }
   return 0.5 * sum;
 }
@@ -85,8 +82,8 @@ Vec2 areaCentroid(const Curve2& curve)
   {
     const Vec2 a = curve[i] - mean;
     const Vec2 b = curve[(i + 1) % curve.size()] - mean;
-    area += cross(a, b);
-    sum += cross(a, b) * (a + b) / 3.0;
+    area += planeCross(a, b);
+    sum += planeCross(a, b) * (a + b) / 3.0;
   }
   const double length = curveLength(curve, true);
   return std::abs(area) > 1e-9 * length * length ? Vec2(mean + sum / area) : mean;

@@ -1,5 +1,8 @@
 #include "Mesh/Geodesic.h"
 
+#include "Mesh/PlaneVector.h"
+#include "Mesh/TriangleSurface.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,20 +13,6 @@ namespace bsr
 namespace
 {
 constexpr double Infinite = std::numeric_limits<double>::infinity();
-
-Index nextOf(Index h)
-{
-  return h % 3 == 2 ? h - 2 : h + 1;
-}
-Index prevOf(Index h)
-{
-  return h % 3 == 0 ? h + 2 : h - 1;
-}
-
-double cross(const Vec2& a, const Vec2& b)
-{
-  return a[0] * b[1] - a[1] * b[0];
-}
 
 /// Distance at the origin of a circular front with distances a and b at A and B; infinite where
 /// the ray does not pass between them.
@@ -76,7 +65,7 @@ FastMarching::FastMarching(const TriangleMesh& mesh, const std::vector<Index>& t
   {
     if (twin[h] < 0)
     {
-      this->Boundary[this->vertex(h)] = this->Boundary[this->vertex(nextOf(h))] = 1;
+      this->Boundary[this->vertex(h)] = this->Boundary[this->vertex(TriangleSurface::next(h))] = 1;
     }
   }
   const auto fill = [&](std::vector<Index>& first, std::vector<Index>& items, const auto& key)
@@ -116,8 +105,8 @@ FastMarching::FastMarching(const TriangleMesh& mesh, const std::vector<Index>& t
 std::array<Vec2, 2> FastMarching::flatten(Index corner) const
 {
   const Vec3 c = this->Mesh.Points[this->vertex(corner)];
-  const Vec3 a = this->Mesh.Points[this->vertex(nextOf(corner))] - c;
-  const Vec3 b = this->Mesh.Points[this->vertex(prevOf(corner))] - c;
+  const Vec3 a = this->Mesh.Points[this->vertex(TriangleSurface::next(corner))] - c;
+  const Vec3 b = this->Mesh.Points[this->vertex(TriangleSurface::prev(corner))] - c;
   const double la = a.norm();
   if (!(la > 0.0))
   {
@@ -137,7 +126,7 @@ FastMarching::Support FastMarching::unfold(Index corner, std::vector<EdgePoint>*
   {
     return none;
   }
-  Index h = nextOf(corner); // the side from a to b
+  Index h = TriangleSurface::next(corner); // the side from a to b
   Vec2 left = a;
   Vec2 right = b;
   for (int step = 0; step < 16; ++step)
@@ -149,8 +138,8 @@ FastMarching::Support FastMarching::unfold(Index corner, std::vector<EdgePoint>*
     }
     // In the neighbor the side runs from right to left; its third vertex beyond, in its own frame.
     const Vec3& pl = this->Mesh.Points[this->vertex(h)];
-    const Vec3& pr = this->Mesh.Points[this->vertex(nextOf(h))];
-    const Vec3& p = this->Mesh.Points[this->vertex(prevOf(o))];
+    const Vec3& pr = this->Mesh.Points[this->vertex(TriangleSurface::next(h))];
+    const Vec3& p = this->Mesh.Points[this->vertex(TriangleSurface::prev(o))];
     const double l = (pr - pl).norm();
     if (!(l > 0.0))
     {
@@ -164,7 +153,7 @@ FastMarching::Support FastMarching::unfold(Index corner, std::vector<EdgePoint>*
     const Vec2 q = left + x * along + y * out;
     if (crossed)
     {
-      crossed->push_back({this->vertex(h), this->vertex(nextOf(h)), 0.5});
+      crossed->push_back({this->vertex(h), this->vertex(TriangleSurface::next(h)), 0.5});
       sides.push_back({left, right});
     }
     // Right angles count: rounding must not decide about them on regular meshes.
@@ -176,21 +165,21 @@ FastMarching::Support FastMarching::unfold(Index corner, std::vector<EdgePoint>*
       for (std::size_t i = 0; i < sides.size(); ++i)
       {
         const Vec2 side = sides[i][1] - sides[i][0];
-        const double t = cross(q, sides[i][0]) / -cross(q, side);
+        const double t = planeCross(q, sides[i][0]) / -planeCross(q, side);
         (*crossed)[i].T = std::clamp(std::isfinite(t) ? t : 0.5, 0.0, 1.0);
       }
-      return {this->vertex(prevOf(o)), q};
+      return {this->vertex(TriangleSurface::prev(o)), q};
     }
     // o runs right -> left -> q: next(o) is left -> q, prev(o) is q -> right.
     if (acuteA)
     {
       left = q; // q lies towards a: the cone passes between q and right
-      h = prevOf(o);
+      h = TriangleSurface::prev(o);
     }
     else
     {
       right = q;
-      h = nextOf(o);
+      h = TriangleSurface::next(o);
     }
   }
   return none;
@@ -200,8 +189,8 @@ double FastMarching::update(Index corner, const std::vector<double>& d,
   const std::vector<std::uint8_t>& done, double slowness) const
 {
   const auto [a, b] = this->flatten(corner);
-  const Index va = this->vertex(nextOf(corner));
-  const Index vb = this->vertex(prevOf(corner));
+  const Index va = this->vertex(TriangleSurface::next(corner));
+  const Index vb = this->vertex(TriangleSurface::prev(corner));
   const double da = done[va] ? d[va] / slowness : Infinite;
   const double db = done[vb] ? d[vb] / slowness : Infinite;
   double best = std::min(da + a.norm(), db + b.norm());
@@ -241,8 +230,8 @@ std::vector<double> FastMarching::distances(
     double s = 1.0;
     if (!slowness.empty())
     {
-      s = (slowness[v] + slowness[this->vertex(nextOf(corner))] +
-            slowness[this->vertex(prevOf(corner))]) /
+      s = (slowness[v] + slowness[this->vertex(TriangleSurface::next(corner))] +
+            slowness[this->vertex(TriangleSurface::prev(corner))]) /
           3.0;
     }
     const double candidate = this->update(corner, d, done, s);
@@ -267,8 +256,8 @@ std::vector<double> FastMarching::distances(
     }
     for (Index i = this->First[v]; i < this->First[v + 1]; ++i)
     {
-      improve(nextOf(this->Corner[i]));
-      improve(prevOf(this->Corner[i]));
+      improve(TriangleSurface::next(this->Corner[i]));
+      improve(TriangleSurface::prev(this->Corner[i]));
     }
     for (Index i = this->DependFirst[v]; i < this->DependFirst[v + 1]; ++i)
     {
@@ -309,8 +298,8 @@ EdgePoint FastMarching::leaveVertex(Index v, const std::vector<double>& d, Index
   for (Index i = this->First[v]; i < this->First[v + 1]; ++i)
   {
     const Index c = this->Corner[i];
-    const Index a = this->vertex(nextOf(c));
-    const Index b = this->vertex(prevOf(c));
+    const Index a = this->vertex(TriangleSurface::next(c));
+    const Index b = this->vertex(TriangleSurface::prev(c));
     for (const Index n : {a, b})
     {
       const double slope = (d[v] - d[n]) / (this->Mesh.Points[n] - p).norm();
@@ -337,7 +326,7 @@ EdgePoint FastMarching::leaveVertex(Index v, const std::vector<double>& d, Index
     {
       steepest = slope;
       best = {a, b, wb / (wa + wb)};
-      entered = this->Twin[nextOf(c)];
+      entered = this->Twin[TriangleSurface::next(c)];
     }
   }
   return best;
@@ -348,8 +337,8 @@ EdgePoint FastMarching::crossFace(
   Index h, const EdgePoint& p, const std::vector<double>& d, Index& entered) const
 {
   const Index a = this->vertex(h);
-  const Index b = this->vertex(nextOf(h));
-  const Index c = this->vertex(prevOf(h));
+  const Index b = this->vertex(TriangleSurface::next(h));
+  const Index c = this->vertex(TriangleSurface::prev(h));
   entered = -1;
   if (d[c] == 0.0 && std::isfinite(d[a]) && std::isfinite(d[b]))
   {
@@ -386,7 +375,7 @@ EdgePoint FastMarching::crossFace(
     const Index v = turn > 0.0 ? b : a;
     return {v, v, 0.0};
   }
-  entered = this->Twin[turn > 0.0 ? nextOf(h) : prevOf(h)];
+  entered = this->Twin[turn > 0.0 ? TriangleSurface::next(h) : TriangleSurface::prev(h)];
   return {turn > 0.0 ? b : a, c, t};
 }
 
@@ -472,191 +461,5 @@ std::vector<EdgePoint> FastMarching::descend(const std::vector<double>& d, Index
     entered = next;
   }
   return value(at) > 0.0 ? std::vector<EdgePoint>{} : path;
-}
-
-/// One sweep: each point slides along its edge until the path is straight there.
-void FastMarching::slide(std::vector<EdgePoint>& path, double margin) const
-{
-  const auto& points = this->Mesh.Points;
-  for (std::size_t i = 1; i + 1 < path.size(); ++i)
-  {
-    EdgePoint& p = path[i];
-    if (p.isVertex())
-    {
-      continue;
-    }
-    const Vec3& a = points[p.A];
-    const Vec3 edge = points[p.B] - a;
-    const double l = edge.norm();
-    if (!(l > 0.0))
-    {
-      continue;
-    }
-    // Both neighbors in the plane: along the edge, and off it on either side.
-    const Vec3 before = path[i - 1].at(points) - a;
-    const Vec3 after = path[i + 1].at(points) - a;
-    const double xb = before.dot(edge) / l;
-    const double xa = after.dot(edge) / l;
-    const double yb = before.cross(edge).norm() / l;
-    const double ya = after.cross(edge).norm() / l;
-    if (yb + ya > 1e-12 * l)
-    {
-      p.T = std::clamp((xb + (xa - xb) * yb / (yb + ya)) / l, margin, 1.0 - margin);
-    }
-  }
-}
-
-/// Points at the ends of their edges become vertices, if those are inside the surface; what runs to
-/// and fro is cut out.
-void FastMarching::snap(std::vector<EdgePoint>& path, double margin) const
-{
-  for (std::size_t i = 1; i + 1 < path.size(); ++i)
-  {
-    EdgePoint& p = path[i];
-    if (!p.isVertex() && (p.T <= margin || p.T >= 1.0 - margin))
-    {
-      const Index v = p.T <= margin ? p.A : p.B;
-      if (!this->Boundary[v])
-      {
-        p = {v, v, 0.0};
-      }
-    }
-  }
-  std::vector<EdgePoint> out;
-  for (const EdgePoint& p : path)
-  {
-    const auto same = std::find_if(out.begin(), out.end(),
-      [&](const EdgePoint& q) { return p.isVertex() && q.isVertex() && p.A == q.A; });
-    out.erase(same, out.end());
-    out.push_back(p);
-  }
-  path.swap(out);
-}
-
-/// The corners around a vertex in counter-clockwise order, from a boundary where there is one.
-std::vector<Index> FastMarching::fan(Index v) const
-{
-  Index c = this->Corner[this->First[v]];
-  const Index start = c;
-  for (Index x = this->Twin[c]; x >= 0; x = this->Twin[c])
-  {
-    c = nextOf(x); // clockwise
-    if (c == start)
-    {
-      break;
-    }
-  }
-  std::vector<Index> corners;
-  const Index first = c;
-  do
-  {
-    corners.push_back(c);
-    const Index x = this->Twin[prevOf(c)];
-    c = x;
-  } while (c >= 0 && c != first);
-  return corners;
-}
-
-/// Leads the path round a vertex on the side where its angle is below pi, over the edges there.
-bool FastMarching::bypass(std::vector<EdgePoint>& path, std::size_t i, double margin) const
-{
-  const Index v = path[i].A;
-  const auto& points = this->Mesh.Points;
-  const std::vector<Index> corners = this->fan(v);
-  std::vector<double> angle(1, 0.0);
-  for (const Index c : corners)
-  {
-    const Vec3 a = points[this->vertex(nextOf(c))] - points[v];
-    const Vec3 b = points[this->vertex(prevOf(c))] - points[v];
-    angle.push_back(angle.back() + std::atan2(a.cross(b).norm(), a.dot(b)));
-  }
-  const std::size_t n = corners.size();
-  // Direction of a neighboring path point in the fan; -1: it is not there.
-  const auto direction = [&](const EdgePoint& p)
-  {
-    for (std::size_t k = 0; k < n; ++k)
-    {
-      const Index a = this->vertex(nextOf(corners[k]));
-      const Index b = this->vertex(prevOf(corners[k]));
-      const bool onA = (p.A == a && (p.B == a || p.B == v)) || (p.A == v && p.B == a);
-      const bool onB = (p.A == b && (p.B == b || p.B == v)) || (p.A == v && p.B == b);
-      if (onA || onB)
-      {
-        return angle[onA ? k : k + 1];
-      }
-      if ((p.A == a && p.B == b) || (p.A == b && p.B == a))
-      {
-        const Vec3 x = p.at(points) - points[v];
-        const Vec3 e = points[a] - points[v];
-        return angle[k] + std::atan2(e.cross(x).norm(), e.dot(x));
-      }
-    }
-    return -1.0;
-  };
-  const double from = direction(path[i - 1]);
-  const double to = direction(path[i + 1]);
-  if (from < 0.0 || to < 0.0)
-  {
-    return false;
-  }
-  const bool closed = !this->Boundary[v];
-  const double whole = angle.back();
-  double left = to - from; // counter-clockwise from the one to the other
-  double right = -left;
-  left += left < 0.0 ? (closed ? whole : 100.0) : 0.0;
-  right += right < 0.0 ? (closed ? whole : 100.0) : 0.0;
-  const bool ccw = left <= right;
-  const double turn = std::min(left, right);
-  if (turn > M_PI - 1e-4)
-  {
-    return false;
-  }
-  std::vector<std::pair<double, Index>> spokes;
-  const std::size_t count = closed ? n : n + 1;
-  for (std::size_t k = 0; k < count; ++k)
-  {
-    double at = ccw ? angle[k] - from : from - angle[k];
-    at += at < 0.0 && closed ? whole : 0.0;
-    if (at > 1e-9 && at < turn - 1e-9)
-    {
-      const Index end =
-        k < n ? this->vertex(nextOf(corners[k])) : this->vertex(prevOf(corners[k - 1]));
-      spokes.emplace_back(at, end);
-    }
-  }
-  std::sort(spokes.begin(), spokes.end());
-  std::vector<EdgePoint> around;
-  around.reserve(spokes.size());
-  for (const auto& [at, end] : spokes)
-  {
-    around.push_back({v, end, std::max(0.05, 2.0 * margin)});
-  }
-  path.erase(path.begin() + static_cast<std::ptrdiff_t>(i));
-  path.insert(path.begin() + static_cast<std::ptrdiff_t>(i), around.begin(), around.end());
-  return true;
-}
-
-void FastMarching::straighten(std::vector<EdgePoint>& path, int rounds, double margin) const
-{
-  for (int round = 0; round < rounds; ++round)
-  {
-    for (int sweep = 0; sweep < 12; ++sweep)
-    {
-      this->slide(path, margin);
-    }
-    this->snap(path, std::max(margin, 1e-6));
-    bool changed = false;
-    for (std::size_t i = 1; i + 1 < path.size(); ++i)
-    {
-      if (path[i].isVertex() && this->bypass(path, i, margin))
-      {
-        changed = true;
-      }
-    }
-    if (!changed)
-    {
-      break;
-    }
-  }
 }
 } // namespace bsr

@@ -1,7 +1,10 @@
 #ifndef CADFile_h
 #define CADFile_h
 
+#include "Adapters/BSRSplineAdapter.h"
+#include "FilterTesting.h"
 #include "Spline/Volume.h"
+#include "vtkSTEPWriter.h"
 
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepGProp.hxx>
@@ -9,6 +12,7 @@
 #include <GProp_GProps.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
+#include <STEPControl_Reader.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Shape.hxx>
@@ -20,6 +24,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 /** Reading back what the CAD writers wrote. */
 namespace bsrtest
@@ -61,6 +66,22 @@ TopoDS_Shape readBack(const std::string& name)
   EXPECT_EQ(reader.ReadFile(name.c_str()), IFSelect_RetDone);
   reader.TransferRoots();
   return reader.OneShape();
+}
+
+/// The model in a filter's output, written to STEP and read by OpenCASCADE.
+inline std::pair<bsr::SplineModel, TopoDS_Shape> throughStep(vtkDataObject* output)
+{
+  const bsr::Result<bsr::SplineModel> model = bsr::splineModelFrom(output);
+  EXPECT_TRUE(model.isOk()) << model.status().message();
+  const Folder folder;
+  const std::string file = folder.file("model.step");
+  vtkNew<vtkSTEPWriter> writer;
+  writer->SetInputDataObject(output);
+  writer->SetFileName(file.c_str());
+  ErrorLog log(writer);
+  writer->Write();
+  EXPECT_TRUE(log.empty()) << log.text();
+  return {model.isOk() ? *model : bsr::SplineModel(), readBack<STEPControl_Reader>(file)};
 }
 
 inline int countOf(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind)

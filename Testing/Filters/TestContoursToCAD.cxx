@@ -1,11 +1,6 @@
-#include "Adapters/BSRSplineAdapter.h"
 #include "CADFile.h"
-#include "FilterTesting.h"
 #include "vtkBranchedContourSurface.h"
 #include "vtkContourSkin.h"
-#include "vtkSTEPWriter.h"
-
-#include <STEPControl_Reader.hxx>
 
 #include <vtkPolyData.h>
 #include <vtkXMLPolyDataReader.h>
@@ -26,19 +21,9 @@ void expectValidFile(const std::string& path)
   filter->Update();
   ASSERT_TRUE(log.Errors.empty()) << log.text();
   vtkDataObject* output = filter->GetOutputDataObject(0);
-  const bsr::Result<bsr::SplineModel> model = bsr::splineModelFrom(output);
-  ASSERT_TRUE(model.isOk()) << model.status().message();
-  const Folder folder;
-  const std::string file = folder.file("model.step");
-  vtkNew<vtkSTEPWriter> writer;
-  writer->SetInputDataObject(output);
-  writer->SetFileName(file.c_str());
-  ErrorLog writing(writer);
-  writer->Write();
-  EXPECT_TRUE(writing.empty()) << writing.text();
-  const TopoDS_Shape shape = readBack<STEPControl_Reader>(file);
+  const auto [model, shape] = throughStep(output);
   ASSERT_FALSE(shape.IsNull());
-  EXPECT_EQ(countOf(shape, TopAbs_FACE), static_cast<int>(model->Patches.size()));
+  EXPECT_EQ(countOf(shape, TopAbs_FACE), static_cast<int>(model.Patches.size()));
   EXPECT_EQ(countOf(shape, TopAbs_SHELL), 1);
   EXPECT_TRUE(BRepCheck_Analyzer(shape).IsValid());
 }

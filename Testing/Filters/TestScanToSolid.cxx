@@ -1,10 +1,5 @@
-#include "Adapters/BSRSplineAdapter.h"
 #include "CADFile.h"
-#include "FilterTesting.h"
-#include "vtkSTEPWriter.h"
 #include "vtkScanToNURBS.h"
-
-#include <STEPControl_Reader.hxx>
 
 #include <vtkPolyData.h>
 #include <vtkTable.h>
@@ -55,18 +50,8 @@ TEST_P(ScanToSolid, IsValidInOpenCASCADE)
   EXPECT_LE(fieldValue(report, "MaxNormalJump"), 0.01);
   EXPECT_LE(fieldValue(report, "RelativeRMS"), 5e-3);
   vtkDataObject* output = filter->GetOutputDataObject(vtkScanToNURBS::MODEL);
-  const bsr::Result<bsr::SplineModel> model = bsr::splineModelFrom(output);
-  ASSERT_TRUE(model.isOk()) << model.status().message();
-  const Folder folder;
-  const std::string file = folder.file("model.step");
-  vtkNew<vtkSTEPWriter> writer;
-  writer->SetInputDataObject(output);
-  writer->SetFileName(file.c_str());
-  ErrorLog writing(writer);
-  writer->Write();
-  EXPECT_TRUE(writing.empty()) << writing.text();
-  const TopoDS_Shape shape = readBack<STEPControl_Reader>(file);
-  scan.Closed ? expectSolid(*model, shape, 1) : expectOpenShell(*model, shape);
+  const auto [model, shape] = throughStep(output);
+  scan.Closed ? expectSolid(model, shape, 1) : expectOpenShell(model, shape);
 }
 
 INSTANTIATE_TEST_SUITE_P(Samples, ScanToSolid,

@@ -1,10 +1,5 @@
-#include "Adapters/BSRSplineAdapter.h"
 #include "CADFile.h"
-#include "FilterTesting.h"
 #include "vtkFiberReconstruction.h"
-#include "vtkSTEPWriter.h"
-
-#include <STEPControl_Reader.hxx>
 
 #include <vtkPolyData.h>
 #include <vtkXMLImageDataReader.h>
@@ -48,20 +43,10 @@ TEST_P(VolumeToSolid, IsOneValidSolid)
   vtkDataObject* output = fiber->GetOutputDataObject(vtkFiberReconstruction::MODEL);
   EXPECT_EQ(fieldValue(output, "FoldedPatches"), 0.0);
   EXPECT_LE(fieldValue(output, "MaxNormalJump"), 0.01);
-  const bsr::Result<bsr::SplineModel> model = bsr::splineModelFrom(output);
-  ASSERT_TRUE(model.isOk()) << model.status().message();
-  const Folder folder;
-  const std::string file = folder.file("model.step");
-  vtkNew<vtkSTEPWriter> writer;
-  writer->SetInputDataObject(output);
-  writer->SetFileName(file.c_str());
-  ErrorLog writing(writer);
-  writer->Write();
-  EXPECT_TRUE(writing.empty()) << writing.text();
-  const TopoDS_Shape shape = readBack<STEPControl_Reader>(file);
-  expectSolid(*model, shape, 1);
-  std::printf("%s: %zu faces, volume off by %.1e\n", volume.File, model->Patches.size(),
-    volumeOf(shape) / bsr::measureModel(*model).Volume - 1.0);
+  const auto [model, shape] = throughStep(output);
+  expectSolid(model, shape, 1);
+  std::printf("%s: %zu faces, volume off by %.1e\n", volume.File, model.Patches.size(),
+    volumeOf(shape) / bsr::measureModel(model).Volume - 1.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Samples, VolumeToSolid,
