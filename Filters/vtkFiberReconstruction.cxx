@@ -2,6 +2,8 @@
 
 #include "Adapters/BSRImageAdapter.h"
 #include "Adapters/BSRStageRunner.h"
+#include "Layout/QuadRemesh.h"
+#include "Spline/G1Fit.h"
 #include "vtkBSplineG1Fit.h"
 #include "vtkClosing.h"
 #include "vtkEDTClassify.h"
@@ -53,6 +55,20 @@ void relabelSide(vtkPolyData* surface, unsigned char from, unsigned char to)
   }
   surface->GetPointData()->AddArray(side);
 }
+
+/// Of the late stages: nobody shall wait for the early ones to be told of them.
+bsr::Status checkParameters(vtkFiberReconstruction& filter)
+{
+  bsr::QuadRemeshOptions layout;
+  layout.NumberOfQuads = filter.GetNumberOfQuads();
+  if (bsr::Status s = bsr::checkOptions(layout); !s)
+  {
+    return s;
+  }
+  bsr::G1FitOptions fit;
+  fit.Segments = filter.GetSegmentsPerSide();
+  return bsr::checkOptions(fit);
+}
 } // namespace
 
 vtkFiberReconstruction::vtkFiberReconstruction()
@@ -103,19 +119,25 @@ int vtkFiberReconstruction::RequestData(
   }
   vtkInformation* array = this->GetInputArrayInformation(0);
   bsr::StageRunner stages(this, 100.0);
-  const auto fail = [&]()
+  const auto refuse = [&](const std::string& message)
   {
     for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
     {
       vtkDataObject::GetData(outputs, port)->Initialize();
     }
-    if (stages.message().empty())
+    if (message.empty())
     {
       return 1; // cancelled
     }
-    vtkErrorMacro(<< stages.stage() << ": " << stages.message());
+    vtkErrorMacro(<< message);
     return 0;
   };
+  const auto fail = [&]()
+  { return refuse(stages.message().empty() ? "" : stages.stage() + ": " + stages.message()); };
+  if (const bsr::Status s = checkParameters(*this); !s)
+  {
+    return refuse(s.message());
+  }
 
   vtkNew<vtkClosing> closing;
   closing->SetInputData(image);

@@ -2,6 +2,7 @@
 
 #include "Adapters/BSRMeshAdapter.h"
 #include "Adapters/BSRStageRunner.h"
+#include "Layout/QuadRemesh.h"
 #include "vtkBSplineG1Fit.h"
 #include "vtkFillHolesRBF.h"
 #include "vtkPartitionToQuads.h"
@@ -95,6 +96,15 @@ void copyFields(vtkDataObject* from, vtkFieldData* to, std::initializer_list<con
       to->AddArray(a);
     }
   }
+}
+
+/// Of the layout: nobody shall wait for the holes to be filled to be told of them.
+bsr::Status checkParameters(vtkScanToNURBS& filter)
+{
+  bsr::QuadRemeshOptions layout;
+  layout.NumberOfQuads = filter.GetNumberOfQuads();
+  layout.FeatureAngle = filter.GetFeatureAngle();
+  return bsr::checkOptions(layout);
 }
 } // namespace
 
@@ -285,6 +295,10 @@ int vtkScanToNURBS::RequestData(
   {
     return fail(checked ? "The input has fewer than 8 points; check the filters above."
                         : checked.status().message());
+  }
+  if (const bsr::Status s = checkParameters(*this); !s)
+  {
+    return fail(s.message());
   }
   Stages stages(this, scan);
   if (!stages.close() || !stages.model())

@@ -16,6 +16,7 @@ namespace
 {
 constexpr int MostQuads = 200000;
 constexpr int SpeckQuads = 11; ///< spheres of no more quads become boxes
+} // namespace
 
 Status checkOptions(const QuadRemeshOptions& o)
 {
@@ -44,6 +45,8 @@ Status checkOptions(const QuadRemeshOptions& o)
   return Status::ok();
 }
 
+namespace
+{
 Status checkSizeField(const TriangleMesh& mesh, const QuadRemeshOptions& o)
 {
   if (o.Sizing != QuadSizing::Array)

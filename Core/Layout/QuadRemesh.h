@@ -61,6 +61,9 @@ struct QuadLayout
  */
 int leastQuads(int euler, int boundaryLoops);
 
+/// InvalidParameter, with the range allowed, where an option is absurd.
+Status checkOptions(const QuadRemeshOptions& options);
+
 /**
  * A coarse pure-quad layout of a triangle surface.
  *

@@ -19,36 +19,6 @@ namespace
 /// Inner points that cover less of the layout are no lumen's.
 constexpr double LeastCoverage = 0.4;
 
-Status checkOptions(const G1FitOptions& o)
-{
-  if (o.Segments < 3 || o.Segments > 16)
-  {
-    return Status::invalidParameter(
-      "SegmentsPerSide is " + std::to_string(o.Segments) + "; choose 3 to 16.");
-  }
-  if (o.Fairing.empty())
-  {
-    return Status::invalidParameter("Fairing is empty; give at least one value, e.g. 0.9 0.5 0.1.");
-  }
-  for (const double l : o.Fairing)
-  {
-    if (!(l > 0.0 && l < 1.0))
-    {
-      return Status::invalidParameter(
-        "A Fairing value is " + std::to_string(l) + "; all must lie between 0 and 1, exclusive.");
-    }
-  }
-  if (!(o.CreaseAngle > 0.0))
-  {
-    return Status::invalidParameter("CreaseAngle must be above 0 degrees (180: no creases).");
-  }
-  if (!(o.DataWeight >= 0.0) || !std::isfinite(o.DataWeight))
-  {
-    return Status::invalidParameter("DataWeight must be 0 (automatic) or a positive number.");
-  }
-  return Status::ok();
-}
-
 std::unique_ptr<FitSolver> makeSolver(const QuadComplex& complex, const PatchNet& net,
   Continuity continuity, const Creases& creases, SplineSpace& space)
 {
@@ -460,6 +430,36 @@ Result<G1FitResult> fitBody(
   return fit;
 }
 } // namespace
+
+Status checkOptions(const G1FitOptions& o)
+{
+  if (o.Segments < 3 || o.Segments > 16)
+  {
+    return Status::invalidParameter(
+      "SegmentsPerSide is " + std::to_string(o.Segments) + "; choose 3 to 16.");
+  }
+  if (o.Fairing.empty())
+  {
+    return Status::invalidParameter("Fairing is empty; give at least one value, e.g. 0.9 0.5 0.1.");
+  }
+  for (const double l : o.Fairing)
+  {
+    if (!(l > 0.0 && l < 1.0))
+    {
+      return Status::invalidParameter(
+        "A Fairing value is " + std::to_string(l) + "; all must lie between 0 and 1, exclusive.");
+    }
+  }
+  if (!(o.CreaseAngle > 0.0))
+  {
+    return Status::invalidParameter("CreaseAngle must be above 0 degrees (180: no creases).");
+  }
+  if (!(o.DataWeight >= 0.0) || !std::isfinite(o.DataWeight))
+  {
+    return Status::invalidParameter("DataWeight must be 0 (automatic) or a positive number.");
+  }
+  return Status::ok();
+}
 
 Result<G1FitResult> fitG1(const PartitionedPoints& points, const QuadMesh& quads,
   const G1FitOptions& options, Monitor& monitor)

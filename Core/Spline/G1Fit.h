@@ -103,6 +103,9 @@ struct G1FitResult
   std::string Message;           ///< what the user should know, e.g. that there is no inner shell
 };
 
+/// InvalidParameter, with the range allowed, where an option is absurd.
+Status checkOptions(const G1FitOptions& options);
+
 /**
  * Fits a network of bicubic patches, one a quad, to partitioned points: the whole of paper 000,
  * section 4, for the outer and, where points of it are given, the inner shell of a hollow body,

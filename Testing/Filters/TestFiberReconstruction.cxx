@@ -155,6 +155,15 @@ TEST(FiberReconstruction, RefusesAbsurdProperties)
   expectRefused(tube(), "SegmentsPerSide", [](auto* f) { f->SetSegmentsPerSide(1); });
 }
 
+TEST(FiberReconstruction, RefusesTheParametersOfLateStagesBeforeTheFirst)
+{
+  // Of two things wrong, that of the last stage is named: none has run.
+  const auto image = tube();
+  image->SetScalarComponentFromDouble(3, 3, 3, 0, std::nan(""));
+  expectRefused(image, "NumberOfQuads", [](auto* f) { f->SetNumberOfQuads(-3); });
+  expectRefused(image, "SegmentsPerSide", [](auto* f) { f->SetSegmentsPerSide(1); });
+}
+
 TEST(FiberReconstruction, AnEmptyImageIsOneErrorAtMost)
 {
   vtkNew<vtkFiberReconstruction> fiber;
