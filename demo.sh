@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# From a CT volume to a STEP file: ./demo.sh [VOLUME [ISO]] writes out/ (model, report, pictures) and prints a
-# summary. Without arguments a digital fiber is made and reconstructed. VOLUME: any image ParaView reads.
+# From data to a STEP file: ./demo.sh [FILE [OPTIONS]] writes out/ (model, report, pictures) and prints a summary.
+# FILE is a CT volume (then an iso value may follow), a scan or polylines; without it a digital fiber is made and
+# reconstructed. Options are those of Examples/fiber.py, scan.py and femur.py.
 set -euo pipefail
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 args=()
@@ -11,4 +12,5 @@ args+=("${@:2}")
 "$here/setup.sh"
 cd "$here"
 exec xvfb-run -a -s "-screen 0 1400x1000x24 -noreset" \
-  pvpython Examples/fiber.py --plugin build/lib/BSplineReconstruction/BSplineReconstruction.so --output out "${args[@]}"
+  pvpython Examples/demo.py "${args[@]}" \
+  --plugin build/lib/BSplineReconstruction/BSplineReconstruction.so --output out
