@@ -297,6 +297,7 @@ private:
     }
     const auto chosen = spreadOut(this->Input.Points, items, rim.size(), MostCenters);
     std::vector<Vec3> points;
+    points.reserve(chosen.size());
     std::vector<Vec3> normals(chosen.size(), Vec3::Zero());
     for (const Index v : chosen)
     {

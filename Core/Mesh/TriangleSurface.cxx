@@ -201,7 +201,7 @@ Index TriangleSurface::split(Index h, const Vec3& position)
   this->Virtual.push_back(0);
   const Index f = this->faces(); // (m, b, c) beside h
   const Index g = f + 1;         // (b, m, d) beside o
-  const auto size = static_cast<std::size_t>(3 * (g + 1));
+  const auto size = 3 * (static_cast<std::size_t>(g) + 1);
   this->Vertex.resize(size);
   this->Opposite.resize(size);
   this->Crease.resize(size, 0);

@@ -12,6 +12,14 @@ namespace
 constexpr int Grid = 7; ///< samples along a side of a patch
 /// A patch whose normals shrink this much against their mean is nearly folded.
 constexpr double NearlyFolded = 2e-3;
+
+/// The k-th of Grid x Grid places on a patch.
+void placeOnGrid(FitPoint& p, int k)
+{
+  const int row = k / Grid;
+  p.U = (k - row * Grid) / (Grid - 1.0);
+  p.V = row / (Grid - 1.0);
+}
 } // namespace
 
 ShellFaults::ShellFaults(
@@ -75,8 +83,7 @@ std::vector<FitPoint> layoutPoints(const QuadComplex& complex, const std::vector
     {
       FitPoint p;
       p.Patch = f;
-      p.U = k % Grid / (Grid - 1.0);
-      p.V = k / Grid / (Grid - 1.0);
+      placeOnGrid(p, k);
       p.Position = (1 - p.V) * ((1 - p.U) * vertices[q[0]] + p.U * vertices[q[1]]) +
                    p.V * ((1 - p.U) * vertices[q[3]] + p.U * vertices[q[2]]);
       points.push_back(p);
@@ -98,8 +105,7 @@ std::vector<FitPoint> ShellFaults::pointsBelow(double depth) const
         const auto k = static_cast<int>(i % (Grid * Grid));
         FitPoint& p = points[i];
         p.Patch = static_cast<Index>(i / (Grid * Grid));
-        p.U = k % Grid / (Grid - 1.0);
-        p.V = k / Grid / (Grid - 1.0);
+        placeOnGrid(p, k);
         const SurfacePoint s = surface.at(p.Patch, p.U, p.V);
         p.Position = s.Point - 0.25 * depth * s.normal().normalized();
         for (int n = 0; n < Steps; ++n)
