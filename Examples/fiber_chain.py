@@ -30,7 +30,7 @@ def main(volume, model):
     ends = FiberEnds(Input=closed, RawSurface=sides)
     quads = QuadRemesh(Input=ends, NumberOfQuads=400)
     partition = PartitionToQuads(Input=sides, Quads=quads)
-    fit = BSplineG1Fit(Input=partition, Quads=quads)
+    fit = BSplineG1Fit(Input=partition, Quads=quads, Rims=OutputPort(ends, 1))
     fit.UpdatePipeline()
     SaveData(model, proxy=OutputPort(fit, 0))
 

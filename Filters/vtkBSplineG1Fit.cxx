@@ -5,6 +5,8 @@
 #include "Adapters/BSRSplineAdapter.h"
 #include "Spline/G1Fit.h"
 
+#include <vtkCellArray.h>
+#include <vtkCellArrayIterator.h>
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
 #include <vtkInformation.h>
@@ -15,9 +17,11 @@
 #include <vtkPointData.h>
 #include <vtkPointSet.h>
 #include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
 #include <vtkTable.h>
 #include <vtkUnsignedCharArray.h>
 
+#include <algorithm>
 #include <chrono>
 
 vtkStandardNewMacro(vtkBSplineG1Fit);
@@ -93,13 +97,44 @@ bsr::Result<bsr::PartitionedPoints> pointsOf(vtkPointSet* input, const std::stri
   return p;
 }
 
-bsr::Result<bsr::G1FitResult> fit(vtkPointSet* input, vtkPolyData* layout,
+/// The closed polylines.
+std::vector<std::vector<bsr::Vec3>> rimsOf(vtkPolyData* input)
+{
+  std::vector<std::vector<bsr::Vec3>> rims;
+  const auto lines = vtk::TakeSmartPointer(input->GetLines()->NewIterator());
+  for (lines->GoToFirstCell(); !lines->IsDoneWithTraversal(); lines->GoToNextCell())
+  {
+    vtkIdType n = 0;
+    const vtkIdType* ids = nullptr;
+    lines->GetCurrentCell(n, ids);
+    if (n < 4 || ids[0] != ids[n - 1])
+    {
+      continue;
+    }
+    std::vector<bsr::Vec3> rim(static_cast<std::size_t>(n - 1));
+    for (vtkIdType i = 0; i + 1 < n; ++i)
+    {
+      input->GetPoint(ids[i], rim[static_cast<std::size_t>(i)].data());
+    }
+    if (std::all_of(rim.begin(), rim.end(), [](const bsr::Vec3& p) { return p.allFinite(); }))
+    {
+      rims.push_back(std::move(rim));
+    }
+  }
+  return rims;
+}
+
+bsr::Result<bsr::G1FitResult> fit(vtkPointSet* input, vtkPolyData* layout, vtkPolyData* rims,
   const std::string& weightArray, const bsr::G1FitOptions& options, bsr::Monitor& monitor)
 {
-  const auto points = pointsOf(input, weightArray);
+  auto points = pointsOf(input, weightArray);
   if (!points)
   {
     return points.status();
+  }
+  if (rims)
+  {
+    points->Rims = rimsOf(rims);
   }
   const auto quads = bsr::quadMeshFrom(layout, "EndRegion");
   if (!quads)
@@ -196,7 +231,7 @@ void totalsTo(const bsr::G1FitResult& r, double seconds, bool rational, vtkField
 
 vtkBSplineG1Fit::vtkBSplineG1Fit()
 {
-  this->SetNumberOfInputPorts(2);
+  this->SetNumberOfInputPorts(3);
   this->SetNumberOfOutputPorts(3);
 }
 
@@ -213,6 +248,7 @@ void vtkBSplineG1Fit::SetWeightArray(const char* name)
 int vtkBSplineG1Fit::FillInputPortInformation(int port, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkPointSet" : "vtkPolyData");
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), port == 2 ? 1 : 0);
   return 1;
 }
 
@@ -231,6 +267,7 @@ int vtkBSplineG1Fit::RequestData(
   vtkTable* table = vtkTable::GetData(outputs, 2);
   vtkPointSet* input = vtkPointSet::GetData(inputs[0]);
   vtkPolyData* layout = vtkPolyData::GetData(inputs[1]);
+  vtkPolyData* rims = vtkPolyData::GetData(inputs[2]);
   model->Initialize();
   net->Initialize();
   table->Initialize();
@@ -258,7 +295,7 @@ int vtkBSplineG1Fit::RequestData(
   o.Weights.Evolution.Seed = static_cast<std::uint64_t>(this->Seed);
   o.Weights.Tolerance = this->Tolerance;
   bsr::AlgorithmMonitor monitor(this, 0.0, 0.9);
-  const auto result = fit(input, layout, this->WeightArray, o, monitor);
+  const auto result = fit(input, layout, rims, this->WeightArray, o, monitor);
   bsr::SampleOptions sampling;
   sampling.Resolution = this->Resolution;
   bsr::AlgorithmMonitor rest(this, 0.9, 1.0);

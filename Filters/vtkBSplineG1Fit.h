@@ -22,6 +22,10 @@
  *   model's boundary follows (vtkPartitionToQuads, Geodesic);
  * - WeightArray (optional): weights >= 0.
  * Input port 1 (Quads): the layout, quads only, oriented outward, of valence 3 and more inside.
+ * Input port 2 (Rims, optional): closed polylines that the borders of open ends follow where the
+ * layout's vertices lie on one (vtkFiberEnds, port 1); other lines are ignored. Without it borders
+ * are smooth curves through the layout's vertices, which cut the corners of a rim with few quads
+ * around.
  *
  * Output port 0: a surface for the eye, with the exact model in its field data (`SplinePatches`,
  * `SplineControlPoints`, `SplineKnots`, `SplineNeighbors`, `SplineVersion`); point arrays

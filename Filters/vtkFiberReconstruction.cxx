@@ -226,6 +226,10 @@ int vtkFiberReconstruction::RequestData(
   vtkNew<vtkBSplineG1Fit> fit;
   fit->SetInputData(0, partitioned);
   fit->SetInputConnection(1, remesh->GetOutputPort());
+  if (this->OpenEnds == 0)
+  {
+    fit->SetInputConnection(2, ends->GetOutputPort(1));
+  }
   fit->SetContinuity(this->Continuity);
   fit->SetSegmentsPerSide(this->SegmentsPerSide);
   fit->SetOpenEnds(this->OpenEnds);

@@ -178,7 +178,8 @@ private:
         this->gaugeWall(net, shells[0], points, shellOptions);
       }
       auto fit = fitShell(layout, *solver, std::move(points),
-        borderSamples(this->Input, this->Cut, complex, this->Full.Points), shellOptions, part);
+        borderSamples(this->Input, this->Cut, complex, this->Full.Points, side == 1), shellOptions,
+        part);
       if (!fit)
       {
         return fit.status();

@@ -36,6 +36,9 @@ struct PartitionedPoints
   std::vector<Vec3> Normals;      ///< of the surface they come from, of either sign; empty: unknown
   /// 1: on the boundary of the surface, with UV on a boundary side; it will follow. Empty: none.
   std::vector<std::uint8_t> Boundary;
+  /// Closed curves, polylines, that the borders of open ends follow where they run along one;
+  /// empty: borders are smooth curves through their vertices.
+  std::vector<std::vector<Vec3>> Rims;
 };
 
 struct G1FitOptions

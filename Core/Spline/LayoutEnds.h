@@ -29,4 +29,13 @@ CutLayout cutEnds(const QuadMesh& quads, const std::vector<Index>& region);
  */
 std::vector<RimSample> rimSamples(
   const QuadComplex& complex, const std::vector<Vec3>& vertices, bool axialOnly);
+
+/**
+ * The same along given closed polylines: between two vertices of the border the samples are spaced
+ * evenly along the polyline that all vertices of its loop are closest to. Loops that follow none
+ * (a vertex is off by more than a quarter of the loop's mean side, or the vertices are not met in
+ * order, once around) have samples as above.
+ */
+std::vector<RimSample> rimSamples(const QuadComplex& complex, const std::vector<Vec3>& vertices,
+  const std::vector<std::vector<Vec3>>& rims, bool axialOnly);
 } // namespace bsr

@@ -145,9 +145,13 @@ std::vector<FitPoint> selectPoints(
 }
 
 std::vector<RimSample> borderSamples(const PartitionedPoints& points, const CutLayout& cut,
-  const QuadComplex& complex, const std::vector<Vec3>& vertices)
+  const QuadComplex& complex, const std::vector<Vec3>& vertices, bool inner)
 {
   constexpr double SideWeight = 24.0; ///< of all samples of a side: half of a patch's points
+  // Of a sample of a known rim, which is a smooth curve without noise: along the fiber (both)
+  // nothing else tells where the wall ends, across it the wall's own points have a say.
+  constexpr double Along = 4.0;
+  constexpr double Whole = 5.0;
   std::vector<RimSample> samples;
   std::vector<double> count(4 * cut.Kept.size(), 0.0);
   for (std::size_t i = 0; i < points.Boundary.size(); ++i)
@@ -169,12 +173,21 @@ std::vector<RimSample> borderSamples(const PartitionedPoints& points, const CutL
   {
     s.Weight = SideWeight / count[s.HalfEdge];
   }
-  for (const RimSample& s : rimSamples(complex, vertices, true))
+  const auto add = [&](bool axialOnly, double weight)
   {
-    if (count[s.HalfEdge] == 0.0)
+    for (RimSample& s : rimSamples(complex, vertices, points.Rims, axialOnly))
     {
-      samples.push_back(s);
+      if (count[s.HalfEdge] == 0.0)
+      {
+        s.Weight = weight;
+        samples.push_back(s);
+      }
     }
+  };
+  add(true, points.Rims.empty() ? 1.0 : Along);
+  if (!points.Rims.empty() && !inner)
+  {
+    add(false, Whole);
   }
   return samples;
 }

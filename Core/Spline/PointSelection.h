@@ -19,8 +19,8 @@ Vec3 bilinearPoint(const QuadMesh& quads, Index quad, double u, double v);
 std::vector<FitPoint> selectPoints(
   const PartitionedPoints& points, const QuadMesh& quads, const CutLayout& cut, int side);
 
-/// Samples that hold the border: the points marked as Boundary where a side has some, the ends'
-/// rims (see rimSamples) elsewhere.
+/// Samples that hold a shell's border: the points marked as Boundary where a side has some, the
+/// ends' rims (see rimSamples) elsewhere, of which the inner shell knows how far they reach only.
 std::vector<RimSample> borderSamples(const PartitionedPoints& points, const CutLayout& cut,
-  const QuadComplex& complex, const std::vector<Vec3>& vertices);
+  const QuadComplex& complex, const std::vector<Vec3>& vertices, bool inner);
 } // namespace bsr

@@ -250,6 +250,68 @@ TEST(G1Fit, HollowTubeWithOpenEnds)
   EXPECT_EQ(fitted(p, m, closed).OpenEndCount, 0);
 }
 
+namespace
+{
+/// Root mean square distance of the outer border's points near x = 4 from a curve, a polyline.
+double borderOff(const SplineModel& model, const std::vector<Vec3>& curve)
+{
+  double squares = 0.0;
+  int count = 0;
+  for (const SplinePatch& patch : model.Patches)
+  {
+    // A wall's first row of control points is the outer border's.
+    for (int k = 0; patch.Side == Shell::Wall && k < 10; ++k)
+    {
+      const Vec3 p = evaluatePatch(model, patch, (k + 0.5) / 10.0, 0.0).Point;
+      double least = std::numeric_limits<double>::infinity();
+      for (std::size_t i = 0; i < curve.size() && p[0] > 2.0; ++i)
+      {
+        const Vec3& a = curve[i];
+        const Vec3 d = curve[(i + 1) % curve.size()] - a;
+        const double t = std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
+        least = std::min(least, (a + t * d - p).squaredNorm());
+      }
+      squares += p[0] > 2.0 ? least : 0.0;
+      count += p[0] > 2.0;
+    }
+  }
+  return std::sqrt(squares / count);
+}
+} // namespace
+
+TEST(G1Fit, BordersFollowRimsThatTheLayoutCutsShort)
+{
+  // The rim at x = 4 waves three times around; eight straight sides cannot follow it.
+  const auto reach = [](double turn) { return 4.0 + 0.12 * std::sin(3.0 * turn); };
+  QuadMesh m = cappedTube(8);
+  for (Vec3& p : m.Points)
+  {
+    p[0] += p[0] > 3.99 ? reach(std::atan2(p[2], p[1])) - 4.0 : 0.0;
+  }
+  const auto outer = [](const Vec3& x) { return toTube(x, 1.0); };
+  PartitionedPoints p = sample(m, 10, outer, 0.0, 0);
+  append(p, sample(
+              m, 10, [](const Vec3& x) { return toTube(x, 0.7); }, 0.0, 1));
+  for (std::size_t i = 0; i < p.Points.size(); ++i)
+  {
+    p.Side[i] = m.Region[p.QuadId[i]] > 0 ? 255 : p.Side[i];
+  }
+  std::vector<Vec3> rim;
+  for (int i = 0; i < 200; ++i)
+  {
+    const double turn = -0.01 * M_PI * i; // either way around
+    rim.emplace_back(reach(turn), std::cos(turn), std::sin(turn));
+  }
+  const double without = borderOff(fitted(p, m, {}).Model, rim);
+  p.Rims = {{}, {Vec3(9, 9, 9), Vec3(9, 9, 8), Vec3(9, 8, 8)}, rim}; // the others are no rims here
+  const G1FitResult r = fitted(p, m, {});
+  const double with = borderOff(r.Model, rim);
+  EXPECT_LE(with, 0.015);
+  EXPECT_GE(without, 3.0 * with);
+  EXPECT_EQ(r.FoldedPatches, 0);
+  EXPECT_LE(r.MaxNormalJump, 1e-8);
+}
+
 TEST(G1Fit, EndsThatNobodyMarkedAreFoundByCoverage)
 {
   QuadMesh m = cappedTube(8);

@@ -1,7 +1,10 @@
 #include "FilterTesting.h"
 
+#include "Common/Types.h"
+#include "vtkFiberPhantom.h"
 #include "vtkFiberReconstruction.h"
 
+#include <vtkCell.h>
 #include <vtkCellData.h>
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>
@@ -13,6 +16,7 @@
 #include <algorithm>
 #include <cstring>
 #include <functional>
+#include <map>
 
 using namespace bsrtest;
 
@@ -101,6 +105,54 @@ void iso(vtkFiberReconstruction* fiber, double value)
   fiber->SetIsoValue(value);
 }
 
+using Edges = std::vector<std::array<bsr::Vec3, 2>>;
+
+/// The edges between cells of two values of an array.
+Edges bordersOf(vtkPolyData* data, const char* array, double first, double second)
+{
+  vtkDataArray* value = data->GetCellData()->GetArray(array);
+  using Corner = std::array<double, 3>;
+  std::map<std::pair<Corner, Corner>, double> seen;
+  Edges edges;
+  for (vtkIdType c = 0; c < data->GetNumberOfCells(); ++c)
+  {
+    vtkPoints* p = data->GetCell(c)->GetPoints();
+    for (vtkIdType k = 0; k < p->GetNumberOfPoints(); ++k)
+    {
+      Corner a;
+      Corner b;
+      p->GetPoint(k, a.data());
+      p->GetPoint((k + 1) % p->GetNumberOfPoints(), b.data());
+      const double mine = value->GetComponent(c, 0);
+      const double other = seen.emplace(std::minmax(a, b), mine).first->second;
+      if ((mine == first && other == second) || (mine == second && other == first))
+      {
+        edges.push_back({bsr::Vec3(a.data()), bsr::Vec3(b.data())});
+      }
+    }
+  }
+  return edges;
+}
+
+/// Root mean square distance of the edges' middles to the other edges.
+double distance(const Edges& from, const Edges& to)
+{
+  double squares = 0.0;
+  for (const auto& [a, b] : from)
+  {
+    const bsr::Vec3 p = 0.5 * (a + b);
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& [c, d] : to)
+    {
+      const double t =
+        std::clamp((p - c).dot(d - c) / std::max((d - c).squaredNorm(), 1e-300), 0.0, 1.0);
+      least = std::min(least, (c + t * (d - c) - p).squaredNorm());
+    }
+    squares += least;
+  }
+  return std::sqrt(squares / static_cast<double>(from.size()));
+}
+
 vtkPolyData* model(vtkFiberReconstruction* fiber)
 {
   return vtkPolyData::SafeDownCast(fiber->GetOutputDataObject(vtkFiberReconstruction::MODEL));
@@ -186,6 +238,38 @@ TEST(FiberReconstruction, ATubeAtTheBorderOfTheImage)
   EXPECT_TRUE(log.empty()) << log.text();
   EXPECT_LE(fieldValue(model(fiber), "MaxNormalJump"), 0.01);
   EXPECT_EQ(fieldValue(model(fiber), "FoldedPatches"), 0.0);
+}
+
+TEST(FiberReconstruction, RimsOfOpenEndsAreFollowedWithinHalfAVoxel)
+{
+  for (int seed : {3, 8})
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    vtkNew<vtkFiberPhantom> phantom;
+    phantom->SetDimensions(128, 64, 64);
+    phantom->SetSeed(seed);
+    phantom->SetHoles(4);
+    phantom->SetCollapse(0.9);
+    phantom->SetTwist(1.0);
+    vtkNew<vtkFiberReconstruction> fiber;
+    fiber->SetInputConnection(phantom->GetOutputPort());
+    fiber->SetNumberOfQuads(100);
+    ErrorLog log(fiber);
+    fiber->Update();
+    ASSERT_TRUE(log.empty()) << log.text();
+    auto* closed =
+      vtkPolyData::SafeDownCast(fiber->GetOutputDataObject(vtkFiberReconstruction::CLOSED_SURFACE));
+    Edges wanted = bordersOf(closed, "EndRegion", 0.0, 1.0);
+    const Edges second = bordersOf(closed, "EndRegion", 0.0, 2.0);
+    ASSERT_FALSE(wanted.empty());
+    ASSERT_FALSE(second.empty());
+    wanted.insert(wanted.end(), second.begin(), second.end());
+    const Edges got = bordersOf(model(fiber), "Shell", 0.0, 2.0);
+    ASSERT_FALSE(got.empty());
+    EXPECT_LE(distance(got, wanted), 0.5);
+    EXPECT_LE(distance(wanted, got), 0.5);
+    std::printf("rims: %.2f and back %.2f voxels\n", distance(got, wanted), distance(wanted, got));
+  }
 }
 
 TEST(FiberReconstruction, ARadiusOfHalfTheImageWorks)
