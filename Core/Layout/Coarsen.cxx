@@ -29,6 +29,17 @@ public:
     this->Loops = report.BoundaryLoops;
     this->Components = report.Components;
     this->MostEdges = std::max(8, report.MaxValence);
+    std::vector<Vec3> places;
+    places.reserve(reference.Samples.size());
+    for (const SurfaceSample& s : reference.Samples)
+    {
+      places.push_back(s.Point);
+    }
+    this->SampleSides = this->sides(places);
+    for (double side : this->SampleSides)
+    {
+      this->Cell2 += side * side / static_cast<double>(places.size());
+    }
   }
 
   Status run()
@@ -78,7 +89,7 @@ private:
 
   Status local(int target, const Bounds& bound)
   {
-    LocalCoarsener local(this->D, this->Reference, this->O, bound);
+    LocalCoarsener local(this->D, this->Reference, this->O, bound, this->Cell2);
     SubMonitor quiet(this->M, 0.0, 0.0);
     Monitor& m = quiet;
     if (!local.collapseTo(target, bound.Cost, m) || !local.regularize(m))
@@ -89,13 +100,17 @@ private:
     return relaxLayout(this->D, this->Reference, 5, m, 2);
   }
 
-  std::vector<double> sides() const
+  std::vector<double> sides(const std::vector<Vec3>& places) const
   {
-    std::vector<double> sides;
-    for (const Vec3& p : this->D.Mesh.Points)
-    {
-      sides.push_back(this->O.Side(p));
-    }
+    std::vector<double> sides(places.size());
+    parallelForUntilCancelled(0, static_cast<std::int64_t>(places.size()), 256, this->M,
+      [&](std::int64_t first, std::int64_t last)
+      {
+        for (std::int64_t i = first; i < last; ++i)
+        {
+          sides[i] = this->O.Side(places[i]);
+        }
+      });
     return sides;
   }
 
@@ -106,7 +121,7 @@ private:
     {
       return false;
     }
-    const std::vector<Chord> chords = chordsOf(this->D, this->sides());
+    const std::vector<Chord> chords = chordsOf(this->D, this->sides(this->D.Mesh.Points));
     const double room = this->O.Quads * (1.0 + this->O.Tolerance) - this->count();
     const Chord* best = nullptr;
     for (const Chord& c : chords)
@@ -137,7 +152,7 @@ private:
   bool takeStrip(double mostGain, const Bounds& bound)
   {
     std::vector<std::pair<double, std::size_t>> order;
-    const std::vector<Chord> chords = chordsOf(this->D, this->sides());
+    const std::vector<Chord> chords = chordsOf(this->D, this->sides(this->D.Mesh.Points));
     const double least = this->O.Quads * (1.0 - this->O.Tolerance);
     for (std::size_t i = 0; i < chords.size(); ++i)
     {
@@ -206,13 +221,6 @@ private:
   /// Largest distance of a sample, in sides of quads wanted there.
   double farthest(const QuadMesh& mesh)
   {
-    if (this->SampleSides.empty())
-    {
-      for (const SurfaceSample& s : this->Reference.Samples)
-      {
-        this->SampleSides.push_back(this->O.Side(s.Point));
-      }
-    }
     const NearestQuad nearest(mesh);
     return parallelReduce<double>(
       0, static_cast<std::int64_t>(this->Reference.Samples.size()), 64, 0.0,
@@ -234,6 +242,7 @@ private:
   const CoarsenOptions& O;
   Monitor& M;
   std::vector<double> SampleSides;
+  double Cell2 = 0.0; ///< squared side of quads, mean over the samples
   int Euler = 0;
   int Loops = 0;
   int Components = 0;

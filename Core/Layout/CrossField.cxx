@@ -1,9 +1,10 @@
 #include "Layout/CrossField.h"
 
+#include "Common/Parallel.h"
+#include "Common/SparseFactors.h"
 #include "Mesh/Curvature.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/SparseCholesky>
 
 #include <cmath>
 #include <complex>
@@ -92,27 +93,36 @@ private:
     for (int round = 0; round < 6; ++round)
     {
       std::vector<Complex> next = this->Bending;
-      for (Index f = 0; f < s.faces(); ++f)
-      {
-        if (this->Row[f] < 0)
+      parallelForUntilCancelled(0, s.faces(), 2048, this->M,
+        [&](std::int64_t first, std::int64_t last)
         {
-          continue;
-        }
-        Complex sum = this->Bending[this->Row[f]];
-        double weight = 1.0;
-        for (Index h = 3 * f; h < 3 * f + 3; ++h)
-        {
-          if (this->inner(h))
+          for (auto f = static_cast<Index>(first); f < last; ++f)
           {
-            const Index o = s.Opposite[h];
-            sum += this->transport(o, 2) * this->Bending[this->Row[o / 3]];
-            weight += 1.0;
+            if (this->Row[f] >= 0)
+            {
+              next[this->Row[f]] = this->averaged(f);
+            }
           }
-        }
-        next[this->Row[f]] = sum / weight;
-      }
+        });
       this->Bending.swap(next);
     }
+  }
+
+  /// The mean bending of a face and its neighbors.
+  Complex averaged(Index f) const
+  {
+    Complex sum = this->Bending[this->Row[f]];
+    double weight = 1.0;
+    for (Index h = 3 * f; h < 3 * f + 3; ++h)
+    {
+      if (this->inner(h))
+      {
+        const Index o = this->S.Opposite[h];
+        sum += this->transport(o, 2) * this->Bending[this->Row[o / 3]];
+        weight += 1.0;
+      }
+    }
+    return sum / weight;
   }
 
   /// Direction of a crease at half-edge h, over some edges on either side so that jagged borders
@@ -200,7 +210,7 @@ private:
     return m;
   }
 
-  /// False: cancelled, or no solution. One factorization is the longest step.
+  /// False: cancelled, or no solution.
   bool solve(ComplexVector& z) const
   {
     if (this->M.cancelled())
@@ -219,19 +229,14 @@ private:
     const ComplexVector pull = this->Weight.cast<Complex>().cwiseProduct(this->Target);
     // Inverse power steps towards the smoothest field, pulled by the targets.
     const ComplexMatrix held = smooth + attach;
-    Eigen::SimplicialLDLT<ComplexMatrix> solver;
-    const auto factor = [&](const ComplexMatrix& m)
-    {
-      solver.factorize(m);
-      return solver.info() == Eigen::Success && !this->M.cancelled();
-    };
+    SparseFactors<ComplexMatrix> solver;
     const ComplexMatrix pattern = held + identity;
     if (this->M.cancelled())
     {
       return false;
     }
     solver.analyzePattern(pattern);
-    if (this->M.cancelled() || !factor(held + 1e-4 * identity))
+    if (this->M.cancelled() || !solver.factorize(held + 1e-4 * identity, this->M))
     {
       return false;
     }
@@ -255,7 +260,7 @@ private:
     double tau = 30.0;
     for (int stage = 0; stage < 3; ++stage, tau *= 0.4)
     {
-      if (this->M.cancelled() || !factor(tau * held + identity))
+      if (this->M.cancelled() || !solver.factorize(tau * held + identity, this->M))
       {
         return false;
       }

@@ -24,17 +24,17 @@ std::int64_t reach(const GridPoint& d)
 class Extractor
 {
 public:
-  explicit Extractor(GridMap& map) : M(map), S(map.Surface) {}
+  Extractor(GridMap& map, Monitor& monitor) : M(map), S(map.Surface), Watch(monitor) {}
 
   bool prepare()
   {
     for (int pass = 0; pass < 8; ++pass)
     {
-      if (!this->round())
+      if (this->Watch.cancelled() || !this->round())
       {
         return false;
       }
-      if (!this->splitLong())
+      if (!this->Watch.cancelled() && !this->splitLong())
       {
         return this->unfold();
       }
@@ -249,7 +249,7 @@ private:
   /// Flips edges until no triangle is turned over; false: that did not help.
   bool unfold()
   {
-    for (int pass = 0; pass < 20; ++pass)
+    for (int pass = 0; pass < 20 && !this->Watch.cancelled(); ++pass)
     {
       bool any = false;
       bool flipped = false;
@@ -487,6 +487,7 @@ private:
 
   GridMap& M;
   TriangleSurface& S;
+  Monitor& Watch;
   std::vector<GridPoint> Grid;
   std::vector<Index> Parent;
   std::vector<VertexKind> Kind;
@@ -495,13 +496,13 @@ private:
 };
 } // namespace
 
-LayoutDraft extractQuads(
-  GridMap map, std::vector<std::vector<Index>>& borders, std::vector<Index>& borderRegions)
+LayoutDraft extractQuads(GridMap map, std::vector<std::vector<Index>>& borders,
+  std::vector<Index>& borderRegions, Monitor& monitor)
 {
   borders.clear();
   borderRegions.clear();
-  Extractor extractor(map);
-  if (map.UV.empty() || !extractor.prepare())
+  Extractor extractor(map, monitor);
+  if (map.UV.empty() || !extractor.prepare() || monitor.cancelled())
   {
     return {};
   }

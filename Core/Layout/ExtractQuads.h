@@ -15,6 +15,6 @@ namespace bsr
  * The answer may be invalid (checkLayout tells) where the map folds. No quads: not extractable.
  * `borderHalfEdges` receives the points of each border loop in order, with the domain on the left.
  */
-LayoutDraft extractQuads(
-  GridMap map, std::vector<std::vector<Index>>& borders, std::vector<Index>& borderRegions);
+LayoutDraft extractQuads(GridMap map, std::vector<std::vector<Index>>& borders,
+  std::vector<Index>& borderRegions, Monitor& monitor);
 } // namespace bsr

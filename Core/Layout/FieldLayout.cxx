@@ -49,7 +49,7 @@ struct Candidates
   }
 
   /// Keeps the draft if it is sound and better.
-  void offer(const Task& task, LayoutDraft draft, LayoutStage stage)
+  void offer(const Task& task, LayoutDraft draft, LayoutStage stage, Monitor& monitor)
   {
     const LayoutReport report = checkLayout(draft.Mesh);
     if (!report.Valid || report.Euler != task.Euler || report.BoundaryLoops != task.Loops ||
@@ -57,7 +57,8 @@ struct Candidates
     {
       return;
     }
-    const double cost = layoutCost(draft, report, task.Surface, task.Reference, task.Quads);
+    const double cost =
+      layoutCost(draft, report, task.Surface, task.Reference, task.Quads, monitor);
     if (cost < this->Cost)
     {
       this->Draft = std::move(draft);
@@ -103,7 +104,7 @@ Status coarsenedRoad(const Task& task, int fine, Candidates& best, Monitor& moni
   {
     return s;
   }
-  best.offer(task, std::move(found->Draft), LayoutStage::Coarsened);
+  best.offer(task, std::move(found->Draft), LayoutStage::Coarsened, monitor);
   return Status::ok();
 }
 
@@ -134,10 +135,10 @@ Status pairedRoad(const Task& task, Candidates& best, Monitor& monitor)
   {
     return s;
   }
-  best.offer(task, std::move(coarse), LayoutStage::Paired);
+  best.offer(task, std::move(coarse), LayoutStage::Paired, monitor);
   if (best.unsound())
   {
-    best.offer(task, std::move(draft), LayoutStage::Paired);
+    best.offer(task, std::move(draft), LayoutStage::Paired, monitor);
   }
   return Status::ok();
 }
@@ -172,9 +173,9 @@ Status parametrizedRoad(const Task& task, Candidates& best, Monitor& monitor)
     {
       return s;
     }
-    best.offer(task, std::move(counted), LayoutStage::Parametrized);
+    best.offer(task, std::move(counted), LayoutStage::Parametrized, monitor);
   }
-  best.offer(task, std::move(found->Draft), LayoutStage::Parametrized);
+  best.offer(task, std::move(found->Draft), LayoutStage::Parametrized, monitor);
   return Status::ok();
 }
 
@@ -217,7 +218,7 @@ bool bestLayout(const Task& task, Candidates& best, Monitor& monitor)
   if (best.unsound())
   {
     // Three quads in the plane of each triangle: nothing can go wrong but the count.
-    best.offer(task, splitTriangles(task.Surface), LayoutStage::Paired);
+    best.offer(task, splitTriangles(task.Surface), LayoutStage::Paired, monitor);
   }
   return true;
 }
@@ -230,7 +231,7 @@ Result<FieldLayout> fieldLayout(const TriangleSurface& s, const ReferenceSurface
   const auto loops = static_cast<int>(std::count(s.Virtual.begin(), s.Virtual.end(), 1));
   const Task task{s, reference, sizing, options.Quads, s.eulerCharacteristic(), loops, options};
   Candidates best;
-  if (!bestLayout(task, best, monitor))
+  if (!bestLayout(task, best, monitor) || monitor.cancelled())
   {
     return Status::cancelled();
   }

@@ -1,11 +1,11 @@
 #include "Layout/FitLayout.h"
 
 #include "Common/Parallel.h"
+#include "Common/SparseFactors.h"
 #include "Layout/NearestQuad.h"
 #include "Layout/RelaxLayout.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/SparseCholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -88,8 +88,12 @@ public:
         return Status::cancelled();
       }
       Eigen::VectorXd step;
-      if (!this->solve(step))
+      if (!this->solve(step, monitor))
       {
+        if (monitor.cancelled())
+        {
+          return Status::cancelled();
+        }
         break;
       }
       this->apply(step);
@@ -195,7 +199,7 @@ private:
     return this->Samples[i].Normal.dot(this->Samples[i].Point - on);
   }
 
-  bool solve(Eigen::VectorXd& step) const
+  bool solve(Eigen::VectorXd& step, Monitor& monitor) const
   {
     std::vector<double> off(this->Samples.size(), 0.0);
     double square = 0.0;
@@ -261,11 +265,24 @@ private:
         right[r] -= stay * this->Offset[v];
       }
     }
+    if (monitor.cancelled())
+    {
+      return false;
+    }
     Eigen::SparseMatrix<double> m(this->Rows, this->Rows);
     m.setFromTriplets(entries.begin(), entries.end());
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(m);
+    if (monitor.cancelled())
+    {
+      return false;
+    }
+    SparseFactors<Eigen::SparseMatrix<double>> solver;
+    solver.analyzePattern(m);
+    if (!solver.factorize(m, monitor))
+    {
+      return false;
+    }
     step = solver.solve(right);
-    return solver.info() == Eigen::Success && step.allFinite();
+    return step.allFinite();
   }
 
   void apply(const Eigen::VectorXd& step)

@@ -1,11 +1,9 @@
 #include "Layout/GridMap.h"
 
-#include "Common/Parallel.h"
+#include "Layout/GridReduction.h"
 #include "Layout/GridTopology.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
-#include <Eigen/SparseCholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -15,86 +13,20 @@ namespace bsr
 namespace
 {
 using Sparse = Eigen::SparseMatrix<double>;
-using Factors = Eigen::SimplicialLDLT<Sparse>;
+using Factors = SparseFactors<Sparse>;
 constexpr Index MostIntegers = 1200;
 constexpr int StiffeningPasses = 2;
 
 /// A corner coordinate as a combination of unknowns.
 using Combination = std::vector<std::pair<Index, double>>;
 
-/// Columns of L^-1 P B for sparse B: only the paths to the root of the elimination tree are
-/// touched. Incomplete once cancelled.
-Sparse forwardSolved(const Factors& factors, const Sparse& b, Monitor& monitor)
-{
-  const auto& lower = factors.matrixL().nestedExpression();
-  const auto n = static_cast<Index>(lower.cols());
-  std::vector<Index> parent(n, -1);
-  for (Index j = 0; j < n; ++j)
-  {
-    Sparse::InnerIterator it(lower, j);
-    for (; it && it.row() <= j; ++it)
-    {
-    }
-    parent[j] = it ? static_cast<Index>(it.row()) : -1;
-  }
-  const auto& permute = factors.permutationP().indices();
-  std::vector<std::vector<std::pair<Index, double>>> columns(b.cols());
-  parallelForUntilCancelled(0, b.cols(), 8, monitor,
-    [&](std::int64_t first, std::int64_t last)
-    {
-      std::vector<double> x(n, 0.0);
-      std::vector<std::uint8_t> seen(n, 0);
-      for (std::int64_t c = first; c < last; ++c)
-      {
-        std::vector<Index> reached;
-        for (Sparse::InnerIterator it(b, c); it; ++it)
-        {
-          const Index i = permute[it.row()];
-          x[i] = it.value();
-          for (Index j = i; j >= 0 && seen[j] == 0; j = parent[j])
-          {
-            seen[j] = 1;
-            reached.push_back(j);
-          }
-        }
-        std::sort(reached.begin(), reached.end());
-        for (Index j : reached)
-        {
-          for (Sparse::InnerIterator it(lower, j); it; ++it)
-          {
-            if (it.row() > j)
-            {
-              x[it.row()] -= it.value() * x[j];
-            }
-          }
-          columns[c].emplace_back(j, x[j]);
-          x[j] = 0.0;
-          seen[j] = 0;
-        }
-      }
-    });
-  Sparse out(n, b.cols());
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t c = 0; c < columns.size(); ++c)
-  {
-    for (const auto& [row, value] : columns[c])
-    {
-      entries.emplace_back(row, static_cast<Index>(c), value);
-    }
-  }
-  out.setFromTriplets(entries.begin(), entries.end());
-  return out;
-}
-
 class GridSolver
 {
 public:
-  GridSolver(
-    const TriangleSurface& s, const GridTopology& topology, int mostSingular, Monitor& monitor)
+  GridSolver(const TriangleSurface& s, const GridTopology& topology, Monitor& monitor)
       : S(s), Topology(topology), M(monitor), Stiffness(s.Region.size(), 1.0)
   {
-    if (monitor.cancelled() || !topology.Usable || topology.Singular > mostSingular ||
-        topology.Kernel.freeVariables() > MostIntegers)
+    if (monitor.cancelled() || !topology.Usable || topology.Kernel.freeVariables() > MostIntegers)
     {
       return;
     }
@@ -266,8 +198,7 @@ private:
         return false;
       }
     }
-    factors.factorize(h);
-    return factors.info() == Eigen::Success && !this->M.cancelled();
+    return factors.factorize(h, this->M);
   }
 
   template <class List>
@@ -352,13 +283,12 @@ private:
     this->BaseMixed = this->Hry;
     this->Reduced = forwardSolved(this->Base, this->Hry, this->M);
     this->BaseInverse = this->Base.vectorD().cwiseInverse();
-    const Sparse scaled = this->BaseInverse.asDiagonal() * this->Reduced;
     if (this->M.cancelled())
     {
       return false;
     }
-    this->Schur = this->Hyy - Eigen::MatrixXd(Sparse(this->Reduced.transpose() * scaled));
-    return this->Schur.allFinite() && !this->M.cancelled();
+    this->Schur = schurComplement(this->Hyy, this->Reduced, this->BaseInverse, this->M);
+    return !this->M.cancelled() && this->Schur.allFinite();
   }
 
   /// Fixes the whole unknowns: always the one whose rounding costs least, then single steps.
@@ -366,10 +296,13 @@ private:
   bool round()
   {
     const Eigen::Index n = this->Schur.rows();
-    Eigen::MatrixXd regular = this->Schur;
+    Eigen::MatrixXd inverse = this->Schur;
     const double ridge = 1e-9 * std::max(1.0, this->Schur.trace() / std::max<double>(n, 1.0));
-    regular.diagonal().array() += ridge;
-    Eigen::MatrixXd inverse = regular.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+    inverse.diagonal().array() += ridge;
+    if (!invert(inverse, 0.5 * ridge, this->M))
+    {
+      return false;
+    }
     this->Y = inverse * this->Pull;
     std::vector<std::uint8_t> fixed(n, 0);
     for (Eigen::Index step = 0; step < n; ++step)
@@ -506,7 +439,7 @@ struct GridMapper::Solver
   GridMap Map;
 
   Solver(const TriangleSurface& s, const CrossField& field, int mostSingular, Monitor& monitor)
-      : Topology(gridTopology(s, field)), Grid(s, this->Topology, mostSingular, monitor)
+      : Topology(gridTopology(s, field, mostSingular, monitor)), Grid(s, this->Topology, monitor)
   {
     this->Map.Surface = s;
     this->Map.Inside = field.Inside;

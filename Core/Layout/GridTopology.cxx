@@ -12,9 +12,12 @@ constexpr Index RealBase = 1 << 29; ///< stands for a coordinate that is not who
 class TopologyBuilder
 {
 public:
-  TopologyBuilder(const TriangleSurface& s, GridTopology& topology)
+  TopologyBuilder(
+    const TriangleSurface& s, GridTopology& topology, int mostSingular, Monitor& monitor)
       : S(s),
         T(topology),
+        MostSingular(mostSingular),
+        M(monitor),
         Cut(s.Vertex.size(), 0),
         Jump(s.Vertex.size(), 0),
         Singular(s.Points.size(), 0),
@@ -33,8 +36,12 @@ public:
     }
     this->comb();
     this->findSingular();
-    this->prune();
-    this->segments();
+    this->goOn(this->T.Singular <= this->MostSingular);
+    if (this->T.Usable)
+    {
+      this->prune();
+      this->segments();
+    }
     if (this->T.Usable)
     {
       this->corners();
@@ -46,6 +53,14 @@ public:
   }
 
 private:
+  /// The topology is of use only if `condition` holds and the monitor does not cancel.
+  bool goOn(bool condition = true)
+  {
+    this->T.Usable = this->T.Usable && condition && !this->M.cancelled();
+    return this->T.Usable;
+  }
+  bool goOnAt(Index i) { return i % 512 != 0 ? this->T.Usable : this->goOn(); }
+
   Index count() const { return static_cast<Index>(this->S.Vertex.size()); }
   bool inside(Index h) const { return this->T.Field.Inside[h / 3] != 0; }
   bool borderEdge(Index h) const { return this->inside(h) && !this->inside(this->S.Opposite[h]); }
@@ -232,7 +247,7 @@ private:
     this->T.Corners.assign(this->S.Vertex.size(), {});
     std::vector<std::uint8_t> done(this->S.Vertex.size(), 0);
     this->Closing.assign(this->S.Points.size(), {});
-    for (Index v = 0; v < this->S.vertices(); ++v)
+    for (Index v = 0; v < this->S.vertices() && this->goOnAt(v); ++v)
     {
       if (!this->T.Used[v])
       {
@@ -318,7 +333,7 @@ private:
     const Index base = 2 * this->Segments + this->WholeCount;
     this->T.Kernel = IntegerKernel(base + static_cast<Index>(loops.size()));
     this->requireClosing();
-    for (Index h = 0; h < this->count(); ++h)
+    for (Index h = 0; h < this->count() && this->goOnAt(h); ++h)
     {
       if (this->aligned(h))
       {
@@ -333,13 +348,16 @@ private:
       loops[i][base + static_cast<Index>(i)] = -2;
       this->T.Kernel.require(loops[i]);
     }
-    this->T.Kernel.finish();
+    if (this->goOn())
+    {
+      this->T.Kernel.finish();
+    }
   }
 
   /// Once around a vertex leads back to the same coordinates.
   void requireClosing()
   {
-    for (Index v = 0; v < this->S.vertices(); ++v)
+    for (Index v = 0; v < this->S.vertices() && this->goOnAt(v); ++v)
     {
       if (!this->T.Used[v] || this->Border[v])
       {
@@ -397,6 +415,8 @@ private:
 
   const TriangleSurface& S;
   GridTopology& T;
+  int MostSingular;
+  Monitor& M;
   std::vector<std::uint8_t> Cut;
   std::vector<int> Jump;
   std::vector<std::uint8_t> Singular;
@@ -437,11 +457,12 @@ void GridTopology::transitions(const TriangleSurface& s, const std::vector<std::
   }
 }
 
-GridTopology gridTopology(const TriangleSurface& s, const CrossField& field)
+GridTopology gridTopology(
+  const TriangleSurface& s, const CrossField& field, int mostSingular, Monitor& monitor)
 {
   GridTopology topology;
   topology.Field = field;
-  TopologyBuilder builder(s, topology);
+  TopologyBuilder builder(s, topology, mostSingular, monitor);
   builder.run();
   topology.Turn.assign(builder.jumps().begin(), builder.jumps().end());
   return topology;

@@ -39,6 +39,9 @@ struct GridTopology
     std::vector<std::uint8_t>& turn, std::vector<GridPoint>& shift) const;
 };
 
-/// Cuts the domain to a disc through all singular vertices and writes down what must be whole.
-GridTopology gridTopology(const TriangleSurface& s, const CrossField& field);
+/// Cuts the domain to a disc through all singular vertices and writes down what must be whole. Not
+/// usable once cancelled, or for more than `mostSingular` singular vertices, which are counted
+/// only.
+GridTopology gridTopology(
+  const TriangleSurface& s, const CrossField& field, int mostSingular, Monitor& monitor);
 } // namespace bsr

@@ -394,7 +394,7 @@ double scaledJacobian(const QuadMesh& mesh, Index quad)
 }
 
 LayoutDistance layoutDistance(const QuadMesh& mesh, const TriangleSurface& s,
-  const ReferenceSurface& reference, const std::vector<Vec3>& samples)
+  const ReferenceSurface& reference, const std::vector<Vec3>& samples, Monitor& monitor)
 {
   // The quads as a grid of n x n bilinear cells, two triangles each.
   constexpr int n = 4;
@@ -420,8 +420,8 @@ LayoutDistance layoutDistance(const QuadMesh& mesh, const TriangleSurface& s,
       }
     }
   }
-  std::vector<double> there(points.size());
-  parallelFor(0, static_cast<std::int64_t>(points.size()), 256,
+  std::vector<double> there(points.size(), 0.0);
+  parallelForUntilCancelled(0, static_cast<std::int64_t>(points.size()), 256, monitor,
     [&](std::int64_t first, std::int64_t last)
     {
       for (std::int64_t i = first; i < last; ++i)
@@ -429,6 +429,10 @@ LayoutDistance layoutDistance(const QuadMesh& mesh, const TriangleSurface& s,
         there[i] = std::sqrt(reference.Faces.nearest(points[i]).SquaredDistance);
       }
     });
+  if (monitor.cancelled())
+  {
+    return {};
+  }
   const TriangleTree tree(std::move(points), std::move(triangles));
   std::vector<double> back(s.Points.size(), 0.0);
   std::vector<double> weight(s.Points.size(), 0.0);
@@ -439,7 +443,7 @@ LayoutDistance layoutDistance(const QuadMesh& mesh, const TriangleSurface& s,
       weight[v] += s.hole(f) ? 0.0 : s.areaNormal(f).norm();
     }
   }
-  parallelFor(0, s.vertices(), 256,
+  parallelForUntilCancelled(0, s.vertices(), 256, monitor,
     [&](std::int64_t first, std::int64_t last)
     {
       for (std::int64_t v = first; v < last; ++v)
@@ -447,20 +451,20 @@ LayoutDistance layoutDistance(const QuadMesh& mesh, const TriangleSurface& s,
         back[v] = s.Virtual[v] ? 0.0 : std::sqrt(tree.nearest(s.Points[v]).SquaredDistance);
       }
     });
-  const auto worst = parallelReduce(
-    0, static_cast<std::int64_t>(samples.size()), 256, 0.0,
+  std::vector<double> more(samples.size(), 0.0);
+  parallelForUntilCancelled(0, static_cast<std::int64_t>(samples.size()), 256, monitor,
     [&](std::int64_t first, std::int64_t last)
     {
-      double most = 0.0;
       for (std::int64_t i = first; i < last; ++i)
       {
-        most = std::max(most, tree.nearest(samples[i]).SquaredDistance);
+        more[i] = tree.nearest(samples[i]).SquaredDistance;
       }
-      return most;
-    },
-    [](double a, double b) { return std::max(a, b); });
+    });
   LayoutDistance d;
-  d.Maximum = std::sqrt(worst);
+  for (double squared : more)
+  {
+    d.Maximum = std::max(d.Maximum, std::sqrt(squared));
+  }
   double total = 0.0;
   for (std::size_t v = 0; v < back.size(); ++v)
   {

@@ -76,7 +76,7 @@ struct LayoutDistance
   double Maximum = 0.0;
   double Mean = 0.0; ///< from the surface to the layout
 };
-/// `samples` are more points of the surface, for the maximum.
+/// `samples` are more points of the surface, for the maximum. Incomplete once cancelled.
 LayoutDistance layoutDistance(const QuadMesh& mesh, const TriangleSurface& s,
-  const ReferenceSurface& reference, const std::vector<Vec3>& samples = {});
+  const ReferenceSurface& reference, const std::vector<Vec3>& samples, Monitor& monitor);
 } // namespace bsr

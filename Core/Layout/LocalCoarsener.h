@@ -54,8 +54,9 @@ inline double distanceToQuad(const QuadEditor& e, Index q, const Vec3& p)
 class LocalCoarsener
 {
 public:
+  /// \param cell2 squared side of quads, mean over the samples
   LocalCoarsener(const LayoutDraft& draft, const ReferenceSurface& reference,
-    const CoarsenOptions& options, const Bounds& bounds)
+    const CoarsenOptions& options, const Bounds& bounds, double cell2)
       : E(draft),
         Reference(reference),
         Samples(reference.Samples),
@@ -64,24 +65,24 @@ public:
         Facing(bounds.Facing),
         Stamp(draft.Mesh.Quads.size(), 0),
         Held(draft.Mesh.Quads.size()),
-        Loss(2 * draft.Mesh.Quads.size(), 0.0)
+        Side(draft.Mesh.Points.size()),
+        Normal(draft.Mesh.Points.size()),
+        Loss(2 * draft.Mesh.Quads.size(), 0.0),
+        Cell2(cell2)
   {
-    for (const Vec3& p : draft.Mesh.Points)
-    {
-      this->Side.push_back(options.Side(p));
-    }
-    this->Normal.resize(draft.Mesh.Points.size());
+    parallelFor(0, static_cast<std::int64_t>(this->Side.size()), 64,
+      [&](std::int64_t first, std::int64_t last)
+      {
+        for (std::int64_t v = first; v < last; ++v)
+        {
+          this->Side[v] = options.Side(draft.Mesh.Points[v]);
+        }
+      });
     for (Index v = 0; v < static_cast<Index>(this->Normal.size()); ++v)
     {
       this->onSurface(v, draft.Mesh.Points[v]);
     }
     this->assign(draft.Mesh);
-    this->Cell2 = 0.0;
-    for (const SurfaceSample& s : this->Samples)
-    {
-      const double side = options.Side(s.Point);
-      this->Cell2 += side * side / static_cast<double>(this->Samples.size());
-    }
     this->SamplesPerQuad = std::max(1.0, static_cast<double>(this->Samples.size()) / options.Quads);
   }
 
@@ -552,13 +553,13 @@ private:
   double Least;
   double Farthest;
   double Facing;
-  std::vector<double> Side; ///< wanted, per point
-  std::vector<Vec3> Normal; ///< of the surface, per point
   std::vector<std::uint32_t> Stamp;
   std::vector<std::vector<Index>> Held; ///< samples nearest to each quad
+  std::vector<double> Side;             ///< wanted, per point
+  std::vector<Vec3> Normal;             ///< of the surface, per point
   std::vector<double> Distance;         ///< of each sample
   std::vector<double> Loss;             ///< last known, of the two collapses of each quad
-  double Cell2 = 1.0;                   ///< squared side of quads, mean over the samples
+  double Cell2;                         ///< squared side of quads, mean over the samples
   double SamplesPerQuad = 1.0;          ///< of the count wanted
   std::priority_queue<Candidate>* Queue = nullptr;
 };

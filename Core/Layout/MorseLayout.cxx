@@ -170,8 +170,8 @@ private:
     const Status status = relaxLayout(c.Draft, this->Reference, 40, quiet);
     if (status)
     {
-      c.Cost = layoutCost(
-        c.Draft, checkLayout(c.Draft.Mesh), this->S, this->Reference, this->Options.NumberOfQuads);
+      c.Cost = layoutCost(c.Draft, checkLayout(c.Draft.Mesh), this->S, this->Reference,
+        this->Options.NumberOfQuads, quiet);
     }
   }
 

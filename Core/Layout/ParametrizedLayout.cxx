@@ -28,11 +28,12 @@ constexpr double Around = 2.0;     ///< cells around a fold that shrink
 constexpr double Crowded = 0.4;    ///< singular vertices a quad that leave no room for a map
 constexpr double Hopeless = 0.08;  ///< share of triangles that fold: a finer map would, too
 
-/// Side of a grid cell wanted in each triangle.
-std::vector<double> cellsOf(const TriangleSurface& s, const Sizing& sizing, double cell)
+/// Side of a grid cell wanted in each triangle; incomplete once cancelled.
+std::vector<double> cellsOf(
+  const TriangleSurface& s, const Sizing& sizing, double cell, Monitor& monitor)
 {
   std::vector<double> cells(s.Region.size(), cell);
-  parallelFor(0, s.faces(), 256,
+  parallelForUntilCancelled(0, s.faces(), 256, monitor,
     [&](std::int64_t first, std::int64_t last)
     {
       for (auto f = static_cast<Index>(first); f < last; ++f)
@@ -88,11 +89,11 @@ bool regionsAreDiscs(const TriangleSurface& s)
 }
 
 /// The layout of a map: extraction, repair, caps, check. No quads if it is not valid.
-LayoutDraft layoutOf(const GridMap& map, int euler)
+LayoutDraft layoutOf(const GridMap& map, int euler, Monitor& monitor)
 {
   std::vector<std::vector<Index>> borders;
   std::vector<Index> regions;
-  LayoutDraft draft = extractQuads(map, borders, regions);
+  LayoutDraft draft = extractQuads(map, borders, regions, monitor);
   for (std::size_t i = 0; i < borders.size() && !draft.Mesh.Quads.empty(); ++i)
   {
     std::reverse(borders[i].begin(), borders[i].end());
@@ -134,14 +135,14 @@ std::vector<Index> squeezed(const GridMap& map, const std::vector<double>& cells
   return bad;
 }
 
-Trial tryCells(GridMapper& mapper, const std::vector<double>& cells, int euler)
+Trial tryCells(GridMapper& mapper, const std::vector<double>& cells, int euler, Monitor& monitor)
 {
   Trial trial;
   mapper.run(cells,
     [&](const GridMap& map)
     {
       trial.Squeezed = squeezed(map, cells);
-      trial.Draft = layoutOf(map, euler);
+      trial.Draft = layoutOf(map, euler, monitor);
       return !trial.Draft.Mesh.Quads.empty();
     });
   return trial;
@@ -188,12 +189,12 @@ void shrinkAround(const TriangleSurface& s, const std::vector<Index>& triangles,
 } // namespace
 
 double layoutCost(const LayoutDraft& draft, const LayoutReport& report, const TriangleSurface& s,
-  const ReferenceSurface& reference, int wanted)
+  const ReferenceSurface& reference, int wanted, Monitor& monitor)
 {
   const auto got = static_cast<double>(draft.Mesh.Quads.size());
   const double miss = std::abs(std::log(got / wanted));
   const double cell = std::sqrt(s.area() / wanted);
-  const double off = layoutDistance(draft.Mesh, s, reference).Maximum / cell;
+  const double off = layoutDistance(draft.Mesh, s, reference, {}, monitor).Maximum / cell;
   return report.MeanAngleDeviation + 60.0 * std::max(0.0, 0.4 - report.MinJacobian) +
          3.3 * report.Irregular / std::sqrt(static_cast<double>(wanted)) +
          60.0 * std::max(0.0, miss - 0.07) + 20.0 * std::max(0.0, off - 0.8) +
@@ -249,9 +250,9 @@ Result<ParametrizedLayout> parametrizedLayout(const TriangleSurface& s,
       {
         return Status::cancelled();
       }
-      std::vector<double> cells = cellsOf(fine, sizing, cell);
+      std::vector<double> cells = cellsOf(fine, sizing, cell, quiet);
       std::transform(cells.begin(), cells.end(), share.begin(), cells.begin(), std::multiplies<>());
-      Trial trial = tryCells(mapper, cells, euler);
+      Trial trial = tryCells(mapper, cells, euler, quiet);
       LayoutDraft& draft = trial.Draft;
       const auto got = static_cast<int>(draft.Mesh.Quads.size());
       if (got == 0)
@@ -283,7 +284,7 @@ Result<ParametrizedLayout> parametrizedLayout(const TriangleSurface& s,
         return best;
       }
       const LayoutReport report = checkLayout(draft.Mesh);
-      const double cost = layoutCost(draft, report, s, reference, quads);
+      const double cost = layoutCost(draft, report, s, reference, quads, quiet);
       if (cost < bestCost)
       {
         bestCost = cost;

@@ -33,5 +33,5 @@ Result<ParametrizedLayout> parametrizedLayout(const TriangleSurface& s,
 
 /// Small is good: angles, count, irregular vertices, bad quads, distance to the surface.
 double layoutCost(const LayoutDraft& draft, const LayoutReport& report, const TriangleSurface& s,
-  const ReferenceSurface& reference, int wanted);
+  const ReferenceSurface& reference, int wanted, Monitor& monitor);
 } // namespace bsr

@@ -290,7 +290,11 @@ Status addComponent(TriangleSurface& s, int quads, double share, const QuadRemes
                           (report.Valid ? std::string("the topology changed") : report.Problem) +
                           "; try another NumberOfQuads or Seed.");
   }
-  const LayoutDistance d = layoutDistance(found->Draft.Mesh, s, reference, samples);
+  const LayoutDistance d = layoutDistance(found->Draft.Mesh, s, reference, samples, monitor);
+  if (monitor.cancelled())
+  {
+    return Status::cancelled();
+  }
   layout.Distance.Maximum = std::max(layout.Distance.Maximum, d.Maximum);
   layout.Distance.Mean += share * d.Mean;
   layout.Stages.push_back(found->Stage);

@@ -96,11 +96,15 @@ public:
   int mend(Monitor& monitor)
   {
     int moves = 0;
-    for (std::size_t v = 0; v < this->Around.size() && (v % 64 != 0 || !monitor.cancelled()); ++v)
+    for (std::size_t v = 0; v < this->Around.size(); ++v)
     {
       const auto i = static_cast<Index>(v);
       if (this->Draft.Kind[v] != VertexKind::Fixed && this->worst(i) < MendedJacobian)
       {
+        if (monitor.cancelled())
+        {
+          break;
+        }
         moves += this->search(i);
       }
     }

@@ -1,5 +1,6 @@
 #include "Layout/Sizing.h"
 
+#include "Common/Parallel.h"
 #include "Mesh/Curvature.h"
 
 #include <algorithm>
@@ -14,8 +15,9 @@ constexpr double Smallest = 0.3; ///< smallest side, relative to flat places
 constexpr int Averaging = 14;    ///< steps of averaging over neighbors: about half a quad
 constexpr double Growth = 0.5;   ///< of the side per distance
 
-/// Largest principal curvature of each triangle, averaged.
-std::vector<double> bending(const TriangleSurface& s, const std::vector<std::uint8_t>& inside)
+/// Largest principal curvature of each triangle, averaged; incomplete once cancelled.
+std::vector<double> bending(
+  const TriangleSurface& s, const std::vector<std::uint8_t>& inside, Monitor& monitor)
 {
   const std::vector<Vec3> form = faceCurvature(s, inside);
   std::vector<double> value(form.size(), 0.0);
@@ -27,38 +29,43 @@ std::vector<double> bending(const TriangleSurface& s, const std::vector<std::uin
   for (int round = 0; round < Averaging; ++round)
   {
     std::vector<double> next = value;
-    for (Index f = 0; f < s.faces(); ++f)
-    {
-      double sum = value[f];
-      double weight = 1.0;
-      for (Index h = 3 * f; h < 3 * f + 3 && inside[f]; ++h)
+    parallelForUntilCancelled(0, s.faces(), 4096, monitor,
+      [&](std::int64_t first, std::int64_t last)
       {
-        const Index g = s.Opposite[h] / 3;
-        sum += inside[g] ? value[g] : 0.0;
-        weight += inside[g];
-      }
-      next[f] = sum / weight;
-    }
+        for (auto f = static_cast<Index>(first); f < last; ++f)
+        {
+          double sum = value[f];
+          double weight = 1.0;
+          for (Index h = 3 * f; h < 3 * f + 3 && inside[f]; ++h)
+          {
+            const Index g = s.Opposite[h] / 3;
+            sum += inside[g] ? value[g] : 0.0;
+            weight += inside[g];
+          }
+          next[f] = sum / weight;
+        }
+      });
     value.swap(next);
   }
   return value;
 }
 } // namespace
 
-Sizing::Sizing(const TriangleSurface& s, double cell, QuadSizing kind, const Sizing::Field& field)
+Sizing::Sizing(const TriangleSurface& s, double cell, QuadSizing kind, const Sizing::Field& field,
+  Monitor& monitor)
 {
   std::vector<std::uint8_t> inside(s.Region.size());
   for (Index f = 0; f < s.faces(); ++f)
   {
     inside[f] = !s.hole(f);
   }
-  const std::vector<double> bent = bending(s, inside);
+  const std::vector<double> bent = bending(s, inside, monitor);
   std::vector<double> limit(bent.size());
   for (std::size_t f = 0; f < bent.size(); ++f)
   {
     limit[f] = std::min(Bend / std::max(bent[f], 1e-300), 10.0 * cell);
   }
-  for (int round = 0; round < 40; ++round)
+  for (int round = 0; round < 40 && !monitor.cancelled(); ++round)
   {
     bool changed = false;
     for (Index h = 0; h < static_cast<Index>(s.Vertex.size()); ++h)
@@ -77,6 +84,10 @@ Sizing::Sizing(const TriangleSurface& s, double cell, QuadSizing kind, const Siz
       break;
     }
   }
+  if (monitor.cancelled())
+  {
+    return;
+  }
   std::vector<std::array<Index, 3>> triangles;
   for (Index f = 0; f < s.faces(); ++f)
   {
@@ -86,6 +97,10 @@ Sizing::Sizing(const TriangleSurface& s, double cell, QuadSizing kind, const Siz
       this->Limit.push_back(limit[f]);
       this->Area.push_back(s.areaNormal(f).norm());
     }
+  }
+  if (monitor.cancelled())
+  {
+    return;
   }
   this->Tree = TriangleTree(s.Points, std::move(triangles));
   this->Cell = cell;
@@ -154,7 +169,8 @@ Result<Sizing> Sizing::measured(TriangleSurface s, const ReferenceSurface& refer
   {
     return status;
   }
-  return Sizing(s, cell, kind, field);
+  Sizing sizing(s, cell, kind, field, monitor);
+  return monitor.cancelled() ? Result<Sizing>(Status::cancelled()) : std::move(sizing);
 }
 
 double Sizing::cellFor(double quads) const

@@ -27,12 +27,9 @@ public:
   using Field = std::function<double(const Vec3&)>;
 
   Sizing() = default;
-  /// \param s a surface of triangles of even size, about a fifth of `cell`.
-  /// \param field relative side at a place, above 0; used for QuadSizing::Array only
-  Sizing(const TriangleSurface& s, double cell, QuadSizing kind = QuadSizing::Uniform,
-    const Field& field = {});
 
   /// Measures a surface for about so many quads.
+  /// \param field relative side at a place, above 0; used for QuadSizing::Array only
   static Result<Sizing> measured(TriangleSurface s, const ReferenceSurface& reference, int quads,
     QuadSizing kind, const Field& field, Monitor& monitor);
 
@@ -42,6 +39,10 @@ public:
   double cellFor(double quads) const;
 
 private:
+  /// \param s a surface of triangles of even size, about a fifth of `cell`. Incomplete once
+  /// cancelled.
+  Sizing(
+    const TriangleSurface& s, double cell, QuadSizing kind, const Field& field, Monitor& monitor);
   double sideIn(Index triangle, double cell) const;
   void setFactors(
     const TriangleSurface& s, const std::vector<double>& bent, QuadSizing kind, const Field& field);

@@ -24,8 +24,8 @@ Status decimate(TriangleSurface& s, const DecimateOptions& options, Monitor& mon
       break;
     }
     SubMonitor part(monitor, done, done + 0.6 * (1.0 - done));
-    work.sort(Shift * round);
-    if (!work.collapseInBlocks(BlockVertices, static_cast<double>(options.Most) / left, part))
+    const double keep = static_cast<double>(options.Most) / left;
+    if (!work.sort(Shift * round, part) || !work.collapseInBlocks(BlockVertices, keep, part))
     {
       return Status::cancelled();
     }

@@ -105,12 +105,17 @@ void QuadricCollapse::addCrease(Quadric& q, Index h) const
   }
 }
 
-void QuadricCollapse::sort(double shift)
+bool QuadricCollapse::sort(double shift, Monitor& monitor)
 {
-  const std::vector<Index> order = sortAlongCurve(this->S, shift);
+  const std::vector<Index> order = sortAlongCurve(this->S, shift, monitor);
+  if (monitor.cancelled())
+  {
+    return false;
+  }
   permute(this->Quadrics, order);
   permute(this->Degree, order);
   std::fill(this->Version.begin(), this->Version.end(), 0);
+  return true;
 }
 
 void QuadricCollapse::compact()

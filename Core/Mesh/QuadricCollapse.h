@@ -21,8 +21,8 @@ public:
 
   /// Triangles that are not virtual.
   Index faces() const;
-  /// Renumbers along a space-filling curve, see sortAlongCurve.
-  void sort(double shift);
+  /// Renumbers along a space-filling curve, see sortAlongCurve. False when cancelled.
+  bool sort(double shift, Monitor& monitor);
   /// Drops what was removed.
   void compact();
   /// Collapses edges inside blocks of consecutive vertices in parallel, each block to `keep` of

@@ -110,12 +110,20 @@ std::vector<Index> inverse(const std::vector<Index>& order)
 }
 } // namespace
 
-std::vector<Index> sortAlongCurve(TriangleSurface& s, double shift)
+std::vector<Index> sortAlongCurve(TriangleSurface& s, double shift, Monitor& monitor)
 {
   std::vector<Index> vertices = curveOrder(s, shift);
+  if (monitor.cancelled())
+  {
+    return {};
+  }
   const std::vector<Index> vertexRank = inverse(vertices);
   const std::vector<Index> faces = faceOrder(s, vertexRank);
   const std::vector<Index> faceRank = inverse(faces);
+  if (monitor.cancelled())
+  {
+    return {};
+  }
   const auto moved = [&](Index h) { return 3 * faceRank[h / 3] + h % 3; };
   std::vector<Index> vertex(s.Vertex.size());
   std::vector<Index> opposite(s.Vertex.size());
@@ -134,6 +142,10 @@ std::vector<Index> sortAlongCurve(TriangleSurface& s, double shift)
         }
       }
     });
+  if (monitor.cancelled())
+  {
+    return {};
+  }
   s.Vertex.swap(vertex);
   s.Opposite.swap(opposite);
   s.Crease.swap(crease);

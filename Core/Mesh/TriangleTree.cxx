@@ -100,6 +100,7 @@ Index TriangleTree::build(
   {
     this->Nodes[id].First = first;
     this->Nodes[id].Count = last - first;
+    this->boundCrosses(this->Nodes[id]);
     return id;
   }
   int axis = 0;
@@ -108,14 +109,36 @@ Index TriangleTree::build(
   std::nth_element(order.begin() + first, order.begin() + middle, order.begin() + last,
     [&](Index a, Index b)
     { return centers[a][axis] != centers[b][axis] ? centers[a][axis] < centers[b][axis] : a < b; });
-  this->build(order, centers, first, middle);
+  const Index left = this->build(order, centers, first, middle);
   const Index second = this->build(order, centers, middle, last);
-  this->Nodes[id].First = second;
+  Node& made = this->Nodes[id];
+  made.First = second;
+  made.LowCross = this->Nodes[left].LowCross.cwiseMin(this->Nodes[second].LowCross);
+  made.HighCross = this->Nodes[left].HighCross.cwiseMax(this->Nodes[second].HighCross);
   return id;
 }
 
-template <class Allowed>
-void TriangleTree::search(const Vec3& p, NearestOnTriangle& best, const Allowed& allowed) const
+Vec3 TriangleTree::cross(Index triangle) const
+{
+  const auto& t = this->Triangles[triangle];
+  const Vec3& a = this->Points[t[0]];
+  return (this->Points[t[1]] - a).cross(this->Points[t[2]] - a);
+}
+
+void TriangleTree::boundCrosses(Node& node) const
+{
+  node.LowCross = node.HighCross = this->cross(this->Order[node.First]);
+  for (Index i = node.First + 1; i < node.First + node.Count; ++i)
+  {
+    const Vec3 n = this->cross(this->Order[i]);
+    node.LowCross = node.LowCross.cwiseMin(n);
+    node.HighCross = node.HighCross.cwiseMax(n);
+  }
+}
+
+template <class MayHold, class Allowed>
+void TriangleTree::search(
+  const Vec3& p, NearestOnTriangle& best, const MayHold& mayHold, const Allowed& allowed) const
 {
   if (this->Nodes.empty())
   {
@@ -132,13 +155,21 @@ void TriangleTree::search(const Vec3& p, NearestOnTriangle& best, const Allowed&
       continue;
     }
     const Node& node = this->Nodes[id];
+    if (!mayHold(node))
+    {
+      continue;
+    }
     for (Index i = node.First; i < node.First + node.Count; ++i)
     {
+      if (!allowed(this->Order[i]))
+      {
+        continue;
+      }
       const auto& t = this->Triangles[this->Order[i]];
       const Vec3 q =
         nearestOnTriangle(p, this->Points[t[0]], this->Points[t[1]], this->Points[t[2]]);
       const double d = (q - p).squaredNorm();
-      if (d < best.SquaredDistance && allowed(t))
+      if (d < best.SquaredDistance)
       {
         best = {this->Order[i], q, d};
       }
@@ -162,7 +193,8 @@ void TriangleTree::search(const Vec3& p, NearestOnTriangle& best, const Allowed&
 NearestOnTriangle TriangleTree::nearest(const Vec3& p) const
 {
   NearestOnTriangle best;
-  this->search(p, best, [](const std::array<Index, 3>&) { return true; });
+  this->search(
+    p, best, [](const Node&) { return true; }, [](Index) { return true; });
   return best;
 }
 
@@ -171,20 +203,20 @@ NearestOnTriangle TriangleTree::nearestFacing(
 {
   NearestOnTriangle best;
   best.SquaredDistance = most * most;
-  this->search(p, best,
-    [&](const std::array<Index, 3>& t)
+  this->search(
+    p, best,
+    [&](const Node& node)
     {
-      const Vec3& a = this->Points[t[0]];
-      return (this->Points[t[1]] - a).cross(this->Points[t[2]] - a).dot(direction) > 0.0;
-    });
+      const Vec3 low = node.LowCross.cwiseProduct(direction);
+      return low.cwiseMax(node.HighCross.cwiseProduct(direction)).sum() > 0.0;
+    },
+    [&](Index triangle) { return this->cross(triangle).dot(direction) > 0.0; });
   return best.Triangle >= 0 ? best : this->nearest(p);
 }
 
 Vec3 TriangleTree::normal(Index triangle) const
 {
-  const auto& t = this->Triangles[triangle];
-  const Vec3 n =
-    (this->Points[t[1]] - this->Points[t[0]]).cross(this->Points[t[2]] - this->Points[t[0]]);
+  const Vec3 n = this->cross(triangle);
   const double length = n.norm();
   return length > 0.0 ? Vec3(n / length) : Vec3(Vec3::Zero());
 }

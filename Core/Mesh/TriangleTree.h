@@ -40,12 +40,18 @@ private:
   {
     Eigen::Vector3d Low;
     Eigen::Vector3d High;
+    Eigen::Vector3d LowCross =
+      Eigen::Vector3d::Zero(); ///< bounds of the cross products of the edges of triangles
+    Eigen::Vector3d HighCross = Eigen::Vector3d::Zero();
     Index First = 0; ///< first triangle of a leaf, or the second child
     Index Count = 0; ///< triangles of a leaf, 0 for inner nodes (first child: the next node)
   };
 
-  template <class Allowed>
-  void search(const Vec3& p, NearestOnTriangle& best, const Allowed& allowed) const;
+  template <class MayHold, class Allowed>
+  void search(
+    const Vec3& p, NearestOnTriangle& best, const MayHold& mayHold, const Allowed& allowed) const;
+  Vec3 cross(Index triangle) const;
+  void boundCrosses(Node& node) const;
   Index build(std::vector<Index>& order, const std::vector<Vec3>& centers, Index first, Index last);
   void grow(Node& node, Index triangle) const;
 
