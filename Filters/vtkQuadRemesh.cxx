@@ -171,6 +171,7 @@ int vtkQuadRemesh::RequestData(
   options.NumberOfQuads = this->NumberOfQuads;
   options.FeatureAngle = this->FeatureAngle;
   options.Seed = this->Seed;
+  options.FitMoves = this->FitMoves;
   options.FitRelaxation = this->FitRelaxation;
   options.Method = static_cast<bsr::LayoutMethod>(this->Method);
   options.Eigenfunction = this->Eigenfunction;
@@ -210,6 +211,7 @@ void vtkQuadRemesh::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Sizing: " << this->Sizing << "\n";
   os << indent << "SizeArray: " << this->SizeArray << "\n";
   os << indent << "SmallestComponent: " << this->SmallestComponent << "\n";
+  os << indent << "FitMoves: " << this->FitMoves << "\n";
   os << indent << "FitRelaxation: " << this->FitRelaxation << "\n";
   os << indent << "Seed: " << this->Seed << "\n";
   os << indent << "Eigenfunction: " << this->Eigenfunction << "\n";

@@ -133,6 +133,14 @@ public:
   ///@}
 
   ///@{
+  /// FIELD_ALIGNED: irregular vertices and the points around move over the surface, and edges at
+  /// them are turned, where a bicubic patch in each quad then fits the surface better. Default off.
+  vtkSetMacro(FitMoves, bool);
+  vtkGetMacro(FitMoves, bool);
+  vtkBooleanMacro(FitMoves, bool);
+  ///@}
+
+  ///@{
   /// FIELD_ALIGNED: points leave the surface by up to 0.15 of an edge where the bilinear patches
   /// then fit it better; the mean distance falls to about a half. Default on.
   vtkSetMacro(FitRelaxation, bool);
@@ -182,6 +190,7 @@ private:
   int Sizing = UNIFORM;
   std::string SizeArray;
   double SmallestComponent = 0.01;
+  bool FitMoves = false;
   bool FitRelaxation = true;
   int Seed = 0;
   int Eigenfunction = 0;

@@ -2,6 +2,7 @@
 
 #include "Layout/BoxLayout.h"
 #include "Layout/FitLayout.h"
+#include "Layout/FitMoves.h"
 #include "Mesh/Decimate.h"
 
 #include <algorithm>
@@ -225,7 +226,15 @@ Result<FieldLayout> layOut(TriangleSurface& s, const ReferenceSurface& reference
   append(layout.Surface, {s.toMesh(), {}, {}, {}}, 0);
   auto found =
     fieldLayout(s, reference, *sizing, {quads, options.Seed, options.Sizing, field}, laying);
-  SubMonitor fitting(monitor, 0.9, 1.0);
+  SubMonitor moving(monitor, 0.9, 0.97);
+  SubMonitor fitting(monitor, options.FitMoves ? 0.97 : 0.9, 1.0);
+  if (found && options.FitMoves)
+  {
+    if (Status status = moveToFit(found->Draft, s, reference, moving); !status)
+    {
+      return status;
+    }
+  }
   if (found && options.FitRelaxation)
   {
     const LayoutDraft before = found->Draft;

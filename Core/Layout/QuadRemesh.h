@@ -25,6 +25,7 @@ struct QuadRemeshOptions
   std::vector<double> SizeField; ///< QuadSizing::Array: relative side per point of the mesh, > 0
   /// Components of less area than so many mean quads are dropped as specks; 0: none is.
   double SmallestComponent = 0.01;
+  bool FitMoves = false;     ///< irregular vertices and edges move where patches then fit better
   bool FitRelaxation = true; ///< points leave the surface where patches then fit it better
   int Eigenfunction = 0;     ///< Morse-Smale: place in the spectrum, from 1; 0: automatic
   double Persistence = 0.01; ///< Morse-Smale: noise, as a share of the function's range

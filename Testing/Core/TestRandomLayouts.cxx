@@ -149,27 +149,32 @@ TEST(RandomLayouts, Range)
   int invalid = 0;
   int flipped = 0;
   int offCount = 0;
+  int distant = 0;
   for (unsigned seed = first; seed <= last; ++seed)
   {
     const int grid = 24 + 8 * static_cast<int>(seed % 5);
     const Outcome o = outcomeOf(seed, grid);
     const bool count = o.CountRatio >= 0.9 && o.CountRatio <= 1.1;
-    if (!o.Problem.empty() || o.Flipped > 0 || !count || o.Seconds > 20.0)
+    const bool far = o.Distance > 10.0;
+    if (!o.Problem.empty() || o.Flipped > 0 || !count || far || o.Seconds > 20.0)
     {
-      std::printf("seed %3u grid %d (%s): %s flipped %d quads x %.2f sJ %.2f %.1f s\n", seed, grid,
-        bsrtest::randomSurface(seed, grid).Text.c_str(), o.Problem.c_str(), o.Flipped, o.CountRatio,
-        o.MinJacobian, o.Seconds);
+      std::printf(
+        "seed %3u grid %d (%s): %s flipped %d quads x %.2f sJ %.2f distance %.1f sides %.1f s\n",
+        seed, grid, bsrtest::randomSurface(seed, grid).Text.c_str(), o.Problem.c_str(), o.Flipped,
+        o.CountRatio, o.MinJacobian, o.Distance, o.Seconds);
       std::fflush(stdout);
     }
     EXPECT_EQ(o.Problem, "") << "seed " << seed << " grid " << grid;
     invalid += !o.Problem.empty();
     flipped += o.Flipped > 0;
     offCount += !count;
+    distant += far;
     outcomes.push_back(o);
     if (seed == last || outcomes.size() % 50 == 0)
     {
-      std::printf("%zu shapes: %d invalid, %d with flipped quads, %d off the count by over 10 %%\n",
-        outcomes.size(), invalid, flipped, offCount);
+      std::printf("%zu shapes: %d invalid, %d with flipped quads, %d off the count by over 10 %%, "
+                  "%d off the surface by over 10 sides of a quad\n",
+        outcomes.size(), invalid, flipped, offCount, distant);
       printTable(outcomes);
       std::fflush(stdout);
     }
