@@ -329,6 +329,7 @@ private:
     o.Correction = this->Options.Correction;
     o.DataWeight = this->Options.DataWeight;
     o.CorrelatedNoise = this->Options.CorrelatedNoise;
+    o.MostPasses = this->Options.CorrelatedNoise ? 0 : 40; // exact points: their parameters count
     o.Robust = this->Options.Robust;
     o.Reassign = this->Options.Reassign;
     return o;

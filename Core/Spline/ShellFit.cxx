@@ -2,16 +2,19 @@
 
 #include "Spline/DataBalance.h"
 #include "Spline/FoldCheck.h"
+#include "Spline/NetMixer.h"
 #include "Spline/RobustWeights.h"
 #include "Spline/ShellRepair.h"
 
 #include <cmath>
+#include <limits>
 
 namespace bsr
 {
 namespace
 {
 constexpr double FirstDataWeight = 100.0; ///< K until it is known
+constexpr std::size_t MixedSteps = 6;     ///< of which accelerated passes are made
 
 class ShellFitter
 {
@@ -69,6 +72,10 @@ public:
       {
         return s;
       }
+    }
+    if (Status s = this->converge(schedule.back()); !s)
+    {
+      return s;
     }
     this->Watch.progress(0.9);
     if (Status s = this->unfold(schedule.back()); !s)
@@ -204,6 +211,66 @@ private:
       return Status::cancelled();
     }
     this->weigh(c);
+    return Status::ok();
+  }
+
+  /// Root mean square of the weighted distances at the parameters as they are.
+  double rms() const
+  {
+    const auto r = residuals(this->Net, this->Surface, this->Points);
+    double sum = 0.0;
+    double weight = 0.0;
+    for (std::size_t i = 0; i < r.size(); ++i)
+    {
+      sum += this->Points[i].weight() * r[i].Distance * r[i].Distance;
+      weight += this->Points[i].weight();
+    }
+    return std::sqrt(sum / std::max(weight, 1e-300));
+  }
+
+  /// Passes go on, accelerated, until they gain next to nothing: alone, parameters drift along the
+  /// surface for hundreds of passes. Undone where it makes patches fold.
+  Status converge(double lambda)
+  {
+    constexpr double Growth = 1.02; ///< of the distances, for the steps to be forgotten
+    const NetPoints surface = this->Surface;
+    const std::vector<FitPoint> points = this->Points;
+    NetMixer mixer(MixedSteps);
+    double before = std::numeric_limits<double>::infinity();
+    int idle = 0;
+    for (int i = 0; i < this->Options.MostPasses && idle < 2; ++i)
+    {
+      const NetPoints from = this->Surface;
+      if (Status s = this->solve(lambda); !s)
+      {
+        return s;
+      }
+      const double now = this->rms();
+      idle = now > (1.0 - this->Options.LeastGain) * before ? idle + 1 : 0;
+      if (now > Growth * before)
+      {
+        mixer.clear();
+      }
+      before = now;
+      const NetPoints to = this->Surface;
+      this->Surface = mixer.next(from, to);
+      if (i + 1 == this->Options.MostPasses || idle == 2)
+      {
+        this->Surface = to;
+      }
+      this->correct();
+      if (this->Watch.cancelled())
+      {
+        return Status::cancelled();
+      }
+      this->weigh(4.685);
+    }
+    this->Judge->look(this->Surface);
+    if (this->Judge->score() >= ShellFaults::Severe)
+    {
+      this->Surface = surface;
+      this->Points = points;
+    }
     return Status::ok();
   }
 

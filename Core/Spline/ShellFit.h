@@ -26,6 +26,8 @@ struct ShellFitOptions
   bool Robust = true;          ///< weigh outliers down (Tukey)
   bool Reassign = true;        ///< points may move on to neighboring patches
   int ExtraPasses = 2;         ///< repetitions of the last pass
+  int MostPasses = 0;       ///< accelerated repetitions of it after that, while they gain something
+  double LeastGain = 0.005; ///< of the root mean square distance, of a pass that gains something
   /// Where given, fairing acts on the difference to this net: a shell whose shape this one shares.
   const NetPoints* RestShape = nullptr;
   /// With a RestShape: it is the outer shell, and this one keeps at least this distance inside it.
