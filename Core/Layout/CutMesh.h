@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Common/Monitor.h"
-#include "Layout/LayoutGraph.h"
+#include "Layout/SideOrder.h"
 #include "Mesh/Geodesic.h"
 #include "Mesh/TriangleSurface.h"
 
@@ -27,11 +27,13 @@ public:
   static Result<CutMesh> build(const std::vector<TriangleSurface>& surfaces, const QuadMesh& layout,
     const LayoutGraph& graph, double edge);
 
-  /// Lays the sides as paths of edges, shortest first but with those of `urgent` before, each in
-  /// its sector between its neighbors; then finds the quads' triangles. Returns the number of quads
-  /// without a sound disc; Cancelled when the monitor, asked before each side, says so.
-  Result<int> laySides(const QuadMesh& layout, const LayoutGraph& graph,
-    const std::vector<int>& urgent, Monitor& monitor);
+  /// Lays the sides in their order as paths of edges, each in its sector between its neighbors;
+  /// then finds the quads' triangles. Returns the number of quads without a sound disc; Cancelled
+  /// when the monitor, asked before each side, says so.
+  Result<int> laySides(
+    const QuadMesh& layout, const LayoutGraph& graph, const SideOrder& order, Monitor& monitor);
+  /// Of all sides, world units.
+  double totalLength() const;
 
   /// Replaces a side between two sound quads by a path through the union of both, from the same
   /// first corner to the last. False, with the old side in place, where the path touches other
@@ -53,7 +55,9 @@ private:
   bool placeOnBoundary(const QuadMesh& layout, const std::vector<Index>& corners,
     std::vector<std::vector<Index>>& loops);
   bool followBoundary(const LayoutGraph& graph, Index edge);
-  bool traceSide(const QuadMesh& layout, const LayoutGraph& graph, Index edge, bool near);
+  bool traceSide(const QuadMesh& layout, const LayoutGraph& graph, Index edge, double reach);
+  bool parts(Index edge) const;
+  void takeUp(Index edge);
   std::vector<Index> sector(const LayoutGraph& graph, Index vertex, Index edge) const;
   void fence(const std::vector<Index>& path);
   void mark(const std::vector<Index>& path, std::uint8_t crease);

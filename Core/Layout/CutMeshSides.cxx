@@ -109,9 +109,9 @@ std::vector<Index> CutMesh::sector(const LayoutGraph& graph, Index vertex, Index
   return ring;
 }
 
-/// A side over free vertices, within its length of the straight line between its corners, or three
-/// times as far.
-bool CutMesh::traceSide(const QuadMesh& layout, const LayoutGraph& graph, Index edge, bool near)
+/// A side over free vertices, not further from the straight line between its corners than `reach`
+/// times its length.
+bool CutMesh::traceSide(const QuadMesh& layout, const LayoutGraph& graph, Index edge, double reach)
 {
   const TriangleSurface& s = this->Surface;
   const Index h0 = graph.First[edge];
@@ -160,7 +160,7 @@ bool CutMesh::traceSide(const QuadMesh& layout, const LayoutGraph& graph, Index 
     {
       break;
     }
-    if (toSegment(s.Points[v], pa, pb) > (near ? 1.0 : 3.0) * length)
+    if (toSegment(s.Points[v], pa, pb) > reach * length)
     {
       continue;
     }
@@ -280,37 +280,43 @@ bool CutMesh::findQuad(const LayoutGraph& graph, Index quad)
   return true;
 }
 
-Result<int> CutMesh::laySides(const QuadMesh& layout, const LayoutGraph& graph,
-  const std::vector<int>& urgent, Monitor& monitor)
+/// Whether a side cuts what is left of the surface in two.
+bool CutMesh::parts(Index edge) const
 {
-  std::vector<Index> order;
-  for (Index e = 0; e < graph.edges(); ++e)
-  {
-    if (this->Sides[e].empty())
-    {
-      order.push_back(e);
-    }
-  }
-  const auto length = [&](Index e)
-  {
-    const Index h = graph.First[e];
-    return (layout.Points[graph.from(h)] - layout.Points[graph.to(h)]).norm();
-  };
-  std::sort(order.begin(), order.end(),
-    [&](Index a, Index b)
-    {
-      const auto key = [&](Index e) { return std::make_pair(-urgent[e], length(e)); };
-      return key(a) != key(b) ? key(a) < key(b) : a < b;
-    });
-  for (const Index e : order)
+  const auto& path = this->Sides[edge];
+  const Index left = this->findHalfEdge(path[0], path[1]);
+  const auto faces = this->flood(left / 3);
+  return std::find(faces.begin(), faces.end(), this->Surface.Opposite[left] / 3) == faces.end();
+}
+
+void CutMesh::takeUp(Index edge)
+{
+  this->mark(this->Sides[edge], 0);
+  this->Sides[edge].clear();
+}
+
+Result<int> CutMesh::laySides(
+  const QuadMesh& layout, const LayoutGraph& graph, const SideOrder& order, Monitor& monitor)
+{
+  std::vector<Index> sides = order.Edges;
+  std::size_t tries = order.EndOfLoops - order.FirstLoop; // of a side later, after the other loops
+  tries *= tries;
+  for (std::size_t i = 0; i < sides.size(); ++i)
   {
     if (monitor.cancelled())
     {
       return Status::cancelled();
     }
-    if (!this->traceSide(layout, graph, e, true))
+    const Index e = sides[i];
+    const bool laid = std::any_of(order.Reach.begin(), order.Reach.end(),
+      [&](double reach) { return this->traceSide(layout, graph, e, reach); });
+    if (laid && i >= order.FirstLoop && i < order.EndOfLoops && this->parts(e) && tries > 0)
     {
-      this->traceSide(layout, graph, e, false);
+      this->takeUp(e);
+      const auto at = sides.begin() + static_cast<std::ptrdiff_t>(i);
+      std::rotate(at, at + 1, sides.begin() + static_cast<std::ptrdiff_t>(order.EndOfLoops));
+      --i;
+      --tries;
     }
   }
   int failed = 0;
@@ -319,6 +325,19 @@ Result<int> CutMesh::laySides(const QuadMesh& layout, const LayoutGraph& graph,
     failed += this->findQuad(graph, q) ? 0 : 1;
   }
   return failed;
+}
+
+double CutMesh::totalLength() const
+{
+  double length = 0.0;
+  for (const auto& side : this->Sides)
+  {
+    for (std::size_t i = 1; i < side.size(); ++i)
+    {
+      length += (this->Surface.Points[side[i]] - this->Surface.Points[side[i - 1]]).norm();
+    }
+  }
+  return length;
 }
 
 /// Splits the edges that a path crosses; `old` gains the vertices that fall on its edges.
