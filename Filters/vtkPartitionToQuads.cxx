@@ -184,6 +184,7 @@ bsr::Status geodesic(const Input& in, const bsr::TriangleMesh& mesh, int samples
   {
     bsr::addField(field, "FailedQuads", result->FailedQuads);
     bsr::addField(field, "RoughSides", result->RoughSides);
+    bsr::addField(field, "Detours", result->Detours);
     bsr::addField(field, "FoldedTriangles", result->FoldedTriangles);
     bsr::addField(field, "SideRatio", result->Stretch);
   }

@@ -10,17 +10,26 @@
 #include "vtkSurfaceFromPoints.h"
 
 #include <vtkCell.h>
+#include <vtkCellData.h>
 #include <vtkCleanPolyData.h>
 #include <vtkDataArray.h>
+#include <vtkDoubleArray.h>
+#include <vtkFeatureEdges.h>
 #include <vtkFieldData.h>
+#include <vtkIdFilter.h>
+#include <vtkIdList.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
+#include <vtkMath.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataConnectivityFilter.h>
+#include <vtkPolyDataNormals.h>
+#include <vtkSmartPointer.h>
+#include <vtkStaticPointLocator.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkTable.h>
 #include <vtkTriangle.h>
@@ -37,6 +46,7 @@ namespace
 constexpr double SmallestPart = 0.005; ///< of a scan's area
 constexpr double QuadGrowth = 1.5;     ///< more quads where a layout does not do
 constexpr int MostRounds = 3;
+constexpr double MostDetours = 0.01; ///< share of a layout's sides
 
 /// The parts of a surface of at least SmallestPart of its area; the number of parts left out.
 int dropSpecks(vtkPolyData* surface, vtkPolyData* out)
@@ -85,6 +95,81 @@ int dropSpecks(vtkPolyData* surface, vtkPolyData* out)
     out->GetPointData()->RemoveArray("RegionId");
   }
   return dropped;
+}
+
+/// Points with normals, and those of a mesh around them that hold a model where no points are: on
+/// the mesh's boundary, and filled further away from points than two spacings.
+vtkSmartPointer<vtkPolyData> withRim(vtkPolyData* cloud, vtkPolyData* mesh)
+{
+  vtkNew<vtkPolyDataNormals> oriented;
+  oriented->SetInputData(mesh);
+  oriented->SplittingOff();
+  oriented->ConsistencyOff();
+  oriented->Update();
+  vtkPolyData* surface = oriented->GetOutput();
+  vtkNew<vtkIdFilter> numbered;
+  numbered->SetInputData(surface);
+  numbered->SetPointIdsArrayName("Id");
+  numbered->CellIdsOff();
+  vtkNew<vtkFeatureEdges> rim;
+  rim->SetInputConnection(numbered->GetOutputPort());
+  rim->FeatureEdgesOff();
+  rim->NonManifoldEdgesOff();
+  rim->Update();
+  enum Part : char
+  {
+    Scanned,
+    New,
+    Border
+  };
+  std::vector<char> part(static_cast<std::size_t>(surface->GetNumberOfPoints()), Scanned);
+  vtkDataArray* filled = surface->GetCellData()->GetArray("Filled");
+  for (vtkIdType c = 0; filled && c < filled->GetNumberOfTuples(); ++c)
+  {
+    vtkIdList* corners = surface->GetCell(c)->GetPointIds();
+    for (vtkIdType k = 0; filled->GetComponent(c, 0) > 0.0 && k < corners->GetNumberOfIds(); ++k)
+    {
+      part[static_cast<std::size_t>(corners->GetId(k))] = New;
+    }
+  }
+  vtkDataArray* ids = rim->GetOutput()->GetPointData()->GetArray("Id");
+  for (vtkIdType i = 0; ids && i < ids->GetNumberOfTuples(); ++i)
+  {
+    part[static_cast<std::size_t>(ids->GetComponent(i, 0))] = Border;
+  }
+  vtkNew<vtkStaticPointLocator> nearest;
+  nearest->SetDataSet(cloud);
+  nearest->BuildLocator();
+  vtkDataArray* spacing = cloud->GetPointData()->GetArray("Spacing");
+  vtkDataArray* from = surface->GetPointData()->GetNormals();
+  vtkNew<vtkPoints> places;
+  places->SetDataTypeToDouble();
+  places->DeepCopy(cloud->GetPoints());
+  vtkNew<vtkDoubleArray> normals;
+  normals->DeepCopy(cloud->GetPointData()->GetNormals());
+  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
+  {
+    double x[3];
+    surface->GetPoint(i, x);
+    bool held = part[static_cast<std::size_t>(i)] == Border;
+    if (part[static_cast<std::size_t>(i)] == New)
+    {
+      const vtkIdType k = nearest->FindClosestPoint(x);
+      double p[3];
+      cloud->GetPoint(k, p);
+      const double reach = 2.0 * spacing->GetComponent(k, 0);
+      held = vtkMath::Distance2BetweenPoints(x, p) > reach * reach;
+    }
+    if (held)
+    {
+      places->InsertNextPoint(x);
+      normals->InsertNextTuple(from->GetTuple(i));
+    }
+  }
+  auto out = vtkSmartPointer<vtkPolyData>::New();
+  out->SetPoints(places);
+  out->GetPointData()->SetNormals(normals);
+  return out;
 }
 
 void copyFields(vtkDataObject* from, vtkFieldData* to, std::initializer_list<const char*> names)
@@ -177,9 +262,17 @@ struct vtkScanToNURBS::Stages
     this->Remesh->SetMethod(this->Self->Method);
     this->Remesh->SetSizing(this->Self->Sizing);
     this->Remesh->SetFeatureAngle(this->Self->FeatureAngle);
-    this->Partition->SetInputConnection(
-      0, this->Cloud ? this->Surface->GetOutputPort(vtkSurfaceFromPoints::POINTS)
-                     : this->Fill->GetOutputPort());
+    if (this->Cloud)
+    {
+      this->Partition->SetInputData(
+        0, withRim(vtkPolyData::SafeDownCast(
+                     this->Surface->GetOutputDataObject(vtkSurfaceFromPoints::POINTS)),
+             this->Fill->GetOutput()));
+    }
+    else
+    {
+      this->Partition->SetInputConnection(0, this->Fill->GetOutputPort());
+    }
     this->Partition->SetInputConnection(1, this->Remesh->GetOutputPort());
     this->Partition->SetInputConnection(2, this->Fill->GetOutputPort());
     this->Partition->SetMethod(this->Self->Partition);
@@ -195,7 +288,8 @@ struct vtkScanToNURBS::Stages
     this->Fit->SetResolution(this->Self->Resolution);
   }
 
-  /// Layout, parameters and fit; again with more quads where regions are no discs or patches fold.
+  /// Layout, parameters and fit; again with more quads where regions are no discs, sides take long
+  /// ways round, or patches fold.
   bool model()
   {
     this->connect();
@@ -210,7 +304,9 @@ struct vtkScanToNURBS::Stages
         return false;
       }
       const bool last = more == 0;
-      if (last || this->count(this->Partition, 0, "FailedQuads") == 0.0)
+      const double sides = 2.0 * this->Remesh->GetOutput()->GetNumberOfCells();
+      if (last || (this->count(this->Partition, 0, "FailedQuads") == 0.0 &&
+                    this->count(this->Partition, 0, "Detours") <= MostDetours * sides))
       {
         if (!this->Run.run("BSplineG1Fit", this->Fit, 33.0))
         {
@@ -249,7 +345,7 @@ struct vtkScanToNURBS::Stages
     copyFields(
       this->Fill->GetOutput(), report, {"FilledHoles", "LeftHoles", "HoleSize", "HoleState"});
     copyFields(this->Remesh->GetOutput(), report, {"Irregular", "EulerCharacteristic"});
-    copyFields(parameters, report, {"FailedQuads", "RoughSides", "FoldedTriangles"});
+    copyFields(parameters, report, {"FailedQuads", "RoughSides", "Detours", "FoldedTriangles"});
     const double diagonal = this->Scan->GetLength();
     bsr::addField(report, "DroppedParts", this->Specks);
     bsr::addField(report, "MoreQuadsRounds", this->Rounds);

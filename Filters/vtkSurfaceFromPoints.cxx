@@ -30,6 +30,7 @@ namespace
 constexpr double VoxelShare = 0.5; ///< of the finer quarter's spacing
 constexpr int MostVoxels = 400;    ///< along the longest side, unless asked for
 constexpr double MostReach = 3.0;
+constexpr double RimReach = 0.35; ///< spacings about a point in which the surface is never cut
 constexpr std::size_t TrianglesPerPoint = 4;
 
 double voxelSize(const bsr::OrientedPoints& points, int dimension)
@@ -67,7 +68,7 @@ vtkSmartPointer<vtkPolyData> contour(bsr::DistanceGrid& grid)
   return surface->GetOutput();
 }
 
-/// The part of a surface within `reach` spacings of points.
+/// The part of a surface within `reach` spacings of points that does not stand out over their rims.
 vtkSmartPointer<vtkPolyData> trim(
   vtkPolyData* surface, const bsr::PointDistance& distance, double reach)
 {
@@ -75,12 +76,14 @@ vtkSmartPointer<vtkPolyData> trim(
   remote->SetNumberOfValues(surface->GetNumberOfPoints());
   for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
   {
-    remote->SetValue(i, distance.remoteness(bsr::Vec3(surface->GetPoint(i))));
+    const bsr::Vec3 p(surface->GetPoint(i));
+    const double away = distance.remoteness(p);
+    remote->SetValue(i, std::max(away / reach, std::min(distance.overhang(p), away / RimReach)));
   }
   surface->GetPointData()->SetScalars(remote);
   vtkNew<vtkClipPolyData> clip;
   clip->SetInputData(surface);
-  clip->SetValue(reach);
+  clip->SetValue(1.0);
   clip->InsideOutOn();
   vtkNew<vtkTriangleFilter> triangles;
   triangles->SetInputConnection(clip->GetOutputPort());

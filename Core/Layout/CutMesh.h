@@ -27,12 +27,15 @@ public:
   static Result<CutMesh> build(const std::vector<TriangleSurface>& surfaces, const QuadMesh& layout,
     const LayoutGraph& graph, double edge);
 
-  /// Lays the sides in their order as paths of edges, each in its sector between its neighbors;
+  /// Lays the sides of an order as paths of edges, each in its sector between its neighbors;
   /// then finds the quads' triangles. Returns the number of quads without a sound disc; Cancelled
   /// when the monitor, asked before each side, says so.
   Result<int> laySides(
     const QuadMesh& layout, const LayoutGraph& graph, const SideOrder& order, Monitor& monitor);
-  /// Of all sides, world units.
+  /// Takes up the sides between quads without a disc, or within so many rings of quads around them.
+  void takeUpAround(const LayoutGraph& graph, int rings);
+  /// World units.
+  double sideLength(Index edge) const;
   double totalLength() const;
 
   /// Replaces a side between two sound quads by a path through the union of both, from the same

@@ -295,6 +295,51 @@ void CutMesh::takeUp(Index edge)
   this->Sides[edge].clear();
 }
 
+void CutMesh::takeUpAround(const LayoutGraph& graph, int rings)
+{
+  std::vector<std::uint8_t> bad(graph.Quads.size());
+  for (std::size_t q = 0; q < bad.size(); ++q)
+  {
+    bad[q] = this->Faces[q].empty();
+  }
+  for (int ring = 0; ring < rings; ++ring)
+  {
+    std::vector<std::uint8_t> corner(graph.Spokes.size(), 0);
+    for (std::size_t q = 0; q < bad.size(); ++q)
+    {
+      for (int k = 0; bad[q] && k < 4; ++k)
+      {
+        corner[graph.Quads[q][k]] = 1;
+      }
+    }
+    for (std::size_t q = 0; q < bad.size(); ++q)
+    {
+      const auto& c = graph.Quads[q];
+      bad[q] |= corner[c[0]] | corner[c[1]] | corner[c[2]] | corner[c[3]];
+    }
+  }
+  for (std::size_t q = 0; q < bad.size(); ++q)
+  {
+    for (std::size_t i = 0; bad[q] && i < this->Faces[q].size(); ++i)
+    {
+      this->Surface.Region[this->Faces[q][i]] = Unknown;
+    }
+    if (bad[q])
+    {
+      this->Faces[q].clear();
+    }
+  }
+  for (Index e = 0; e < graph.edges(); ++e)
+  {
+    const Index h = graph.First[e];
+    const Index t = graph.Twin[h];
+    if (t >= 0 && bad[h / 4] && bad[t / 4] && !this->Sides[e].empty())
+    {
+      this->takeUp(e);
+    }
+  }
+}
+
 Result<int> CutMesh::laySides(
   const QuadMesh& layout, const LayoutGraph& graph, const SideOrder& order, Monitor& monitor)
 {
@@ -322,20 +367,28 @@ Result<int> CutMesh::laySides(
   int failed = 0;
   for (Index q = 0; q < static_cast<Index>(graph.Quads.size()); ++q)
   {
-    failed += this->findQuad(graph, q) ? 0 : 1;
+    failed += !this->Faces[q].empty() || this->findQuad(graph, q) ? 0 : 1;
   }
   return failed;
+}
+
+double CutMesh::sideLength(Index edge) const
+{
+  const auto& side = this->Sides[edge];
+  double length = 0.0;
+  for (std::size_t i = 1; i < side.size(); ++i)
+  {
+    length += (this->Surface.Points[side[i]] - this->Surface.Points[side[i - 1]]).norm();
+  }
+  return length;
 }
 
 double CutMesh::totalLength() const
 {
   double length = 0.0;
-  for (const auto& side : this->Sides)
+  for (Index e = 0; e < static_cast<Index>(this->Sides.size()); ++e)
   {
-    for (std::size_t i = 1; i < side.size(); ++i)
-    {
-      length += (this->Surface.Points[side[i]] - this->Surface.Points[side[i - 1]]).norm();
-    }
+    length += this->sideLength(e);
   }
   return length;
 }

@@ -1,9 +1,8 @@
 #include "Layout/GeodesicPartition.h"
 
 #include "Common/BoxTree.h"
-#include "Common/CounterRandom.h"
 #include "Common/Parallel.h"
-#include "Layout/CutMesh.h"
+#include "Layout/LaySides.h"
 #include "Layout/MappedTriangles.h"
 #include "Layout/SquareMap.h"
 #include "Mesh/BoundaryLoops.h"
@@ -20,8 +19,6 @@ namespace bsr
 namespace
 {
 constexpr double EdgeShare = 0.14; ///< longest edge of the refined mesh, of a quad's mean side
-constexpr int Attempts = 3;        ///< orders of the sides that are tried, short ones first
-constexpr int SafeAttempts = 6;    ///< spanning trees that are tried where those do not do
 constexpr double Margin = 0.04;    ///< paths keep this share of an edge away from its ends
 constexpr double OnMesh = 1e-6;    ///< of the diagonal: such points lie on the mesh
 constexpr double Shore = 0.15;     ///< of a side's length: nearer to other sides it is slow
@@ -288,62 +285,14 @@ private:
     {
       return base.status();
     }
-    std::vector<double> length;
-    for (const Index h : this->Graph.First)
+    SubMonitor laying(this->Watch, 0.1, 0.3);
+    auto laid = laySides(*base, this->Quads, this->Graph, laying);
+    if (!laid)
     {
-      length.push_back(
-        (this->Quads.Points[this->Graph.from(h)] - this->Quads.Points[this->Graph.to(h)]).norm());
+      return laid.status();
     }
-    std::vector<int> urgent(length.size(), 0);
-    int least = std::numeric_limits<int>::max();
-    double shortest = std::numeric_limits<double>::infinity();
-    bool done = false; // where a safe order is needed the shortest result of them is taken
-    for (int attempt = 0; attempt < Attempts + SafeAttempts && !done; ++attempt)
-    {
-      const bool safe = attempt >= Attempts;
-      CutMesh tried = *base;
-      const auto failed = tried.laySides(this->Quads, this->Graph,
-        safe ? safeOrder(this->Graph, this->costs(length, urgent, attempt - Attempts))
-             : shortestFirst(this->Graph, length, urgent),
-        this->Watch);
-      if (!failed)
-      {
-        return failed.status();
-      }
-      for (std::size_t h = 0; h < this->Graph.Edge.size() && !safe; ++h)
-      {
-        const Index e = this->Graph.Edge[h];
-        urgent[e] += tried.Sides[e].empty() ? 2 : (tried.Faces[h / 4].empty() ? 1 : 0);
-      }
-      const double total = tried.totalLength();
-      if (*failed < least || (*failed == least && total < shortest))
-      {
-        least = *failed;
-        shortest = total;
-        this->Cut = std::move(tried);
-      }
-      done = least == 0 && !safe;
-      this->Watch.progress(0.1 + 0.2 * (attempt + 1) / (Attempts + SafeAttempts));
-    }
-    this->Out.FailedQuads = least;
+    this->Cut = std::move(laid->Mesh);
     return Status::ok();
-  }
-
-  /// For the order that always leads to discs: by length, changed more with every attempt.
-  std::vector<double> costs(
-    std::vector<double> length, const std::vector<int>& urgent, int attempt) const
-  {
-    CounterRandom random(static_cast<std::uint64_t>(attempt), 0);
-    for (std::size_t e = 0; e < length.size(); ++e)
-    {
-      if (attempt % 2 == 1)
-      {
-        length[e] /= 1.0 + urgent[e];
-      }
-      const double share = random.uniform();
-      length[e] *= attempt < 2 ? 1.0 : 0.5 + share;
-    }
-    return length;
   }
 
   Status straighten()
@@ -496,6 +445,8 @@ private:
   void describe()
   {
     std::vector<double> length(static_cast<std::size_t>(this->Graph.edges()), 0.0);
+    const auto far = detours(this->Cut, this->Quads, this->Graph);
+    this->Out.Detours = static_cast<int>(std::count(far.begin(), far.end(), 1));
     for (Index e = 0; e < this->Graph.edges(); ++e)
     {
       const Index h = this->Graph.First[e];

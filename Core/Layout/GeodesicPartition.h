@@ -23,7 +23,10 @@ struct GeodesicPartition
   std::vector<std::array<Index, 2>> SideQuads; ///< left and right; -1: none
   std::vector<std::uint8_t> Failed; ///< per quad: its points got the nearest quad's (u, v)
   int FailedQuads = 0;
-  int RoughSides = 0;      ///< sides left as paths of edges
+  int RoughSides = 0; ///< sides left as paths of edges
+  /// Sides more than three times as long as the straight line (and 1.5 mean sides long): the
+  /// layout, though of the mesh's topology, does not follow its shape; take more quads.
+  int Detours = 0;
   int FoldedTriangles = 0; ///< of the refined mesh, in the plane
   double Stretch = 0.0;    ///< worst ratio of the longest to the shortest side of a quad
 };

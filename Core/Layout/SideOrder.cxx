@@ -35,15 +35,18 @@ SideOrder shortestFirst(
   return order;
 }
 
-SideOrder safeOrder(const LayoutGraph& graph, const std::vector<double>& cost)
+SideOrder safeOrder(
+  const LayoutGraph& graph, const std::vector<double>& cost, const std::vector<std::uint8_t>& laid)
 {
-  const std::vector<Index> sides =
-    innerSides(graph, [&](Index a, Index b) { return cost[a] < cost[b]; });
+  const auto lies = [&](Index e)
+  { return graph.Twin[graph.First[e]] < 0 || (!laid.empty() && laid[e]); };
+  std::vector<Index> sides = innerSides(graph, [&](Index a, Index b) { return cost[a] < cost[b]; });
+  sides.erase(std::remove_if(sides.begin(), sides.end(), lies), sides.end());
   UnionFind vertices(static_cast<std::int64_t>(graph.Spokes.size()));
   for (Index e = 0; e < graph.edges(); ++e)
   {
     const Index h = graph.First[e];
-    if (graph.Twin[h] < 0)
+    if (lies(e))
     {
       vertices.join(graph.from(h), graph.to(h));
     }

@@ -28,6 +28,8 @@ SideOrder shortestFirst(
  * not part the surface; with the loops the rest is one disc, whatever way they took, as the sides
  * leave each corner in the layout's order; and in a disc every side has one class of ways. Low
  * costs come into the tree, high ones to the end.
+ * \param laid per edge: 1 where the side lies already (or empty)
  */
-SideOrder safeOrder(const LayoutGraph& graph, const std::vector<double>& cost);
+SideOrder safeOrder(const LayoutGraph& graph, const std::vector<double>& cost,
+  const std::vector<std::uint8_t>& laid = {});
 } // namespace bsr

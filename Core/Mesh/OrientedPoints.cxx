@@ -14,6 +14,7 @@ namespace bsr
 namespace
 {
 constexpr std::size_t SpacingNeighbor = 6;
+constexpr double MostSpacing = 6.0; ///< of a point, in spacings of its neighbors
 constexpr int Directions = 26; ///< in which the outermost point is asked where outside is
 
 /// The points without repetitions, in their order.
@@ -138,7 +139,8 @@ private:
       }
       const auto middle = around.begin() + static_cast<std::ptrdiff_t>(this->Count / 2);
       std::nth_element(around.begin(), middle, around.end());
-      this->Out.Spacing[i] = *middle;
+      // Coarse points beside dense ones keep their own; a stray point does not get any.
+      this->Out.Spacing[i] = std::clamp(sixth[i], *middle, MostSpacing * *middle);
     }
   }
 

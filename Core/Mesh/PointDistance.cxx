@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace bsr
 {
@@ -13,6 +14,9 @@ namespace
 constexpr std::size_t Neighbors = 10;
 constexpr double Reach = 0.6; ///< of the weights, in spacings
 constexpr double MostVoxels = 4e8;
+constexpr std::size_t Wide = 48;
+/// Distance of the center of a Gaussian's half from the middle, in standard deviations.
+constexpr double HalfPlane = 0.79788456080286541;
 } // namespace
 
 PointDistance::PointDistance(const OrientedPoints& points)
@@ -44,8 +48,40 @@ double PointDistance::at(const Vec3& p) const
 
 double PointDistance::remoteness(const Vec3& p) const
 {
-  const auto [nearest, d2] = this->Tree->nearest(p);
-  return std::sqrt(d2) / this->Surface->Spacing[nearest];
+  std::array<std::uint32_t, Neighbors> near{};
+  std::array<double, Neighbors> d2{};
+  const std::size_t n = this->Tree->nearest(p, Neighbors, near.data(), d2.data());
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < n; ++k)
+  {
+    least = std::min(least, std::sqrt(d2[k]) / this->Surface->Spacing[near[k]]);
+  }
+  return least;
+}
+
+double PointDistance::overhang(const Vec3& p) const
+{
+  std::array<std::uint32_t, Wide> near{};
+  std::array<double, Wide> d2{};
+  const std::size_t n = this->Tree->nearest(p, Wide, near.data(), d2.data());
+  const Vec3& normal = this->Surface->Normals[near[0]];
+  const double reach = this->Surface->Spacing[near[0]];
+  Vec3 shift = Vec3::Zero();
+  double weights = 0.0;
+  for (std::size_t k = 0; k < n; ++k)
+  {
+    if (this->Surface->Normals[near[k]].dot(normal) > 0.0)
+    {
+      // By the area that a point stands for, so that dense places count like others.
+      const double spacing = this->Surface->Spacing[near[k]];
+      const double w = spacing * spacing * std::exp(-0.5 * d2[k] / (reach * reach));
+      shift += w * (this->Surface->Points[near[k]] - p);
+      weights += w;
+    }
+  }
+  shift /= std::max(weights, 1e-300);
+  shift -= shift.dot(normal) * normal;
+  return shift.norm() / (HalfPlane * reach);
 }
 
 namespace

@@ -24,8 +24,15 @@ public:
 
   /// Read-only, may run in parallel.
   double at(const Vec3& p) const;
-  /// Distance to the nearest point, in units of its spacing.
+  /// Least of the distances to near points, each in units of the point's own spacing: beside dense
+  /// points, too, coarse ones reach as far as they do elsewhere.
   double remoteness(const Vec3& p) const;
+  /**
+   * How far a place of the surface lies outside what the points cover: how much the points around
+   * it (of the nearest point's spacing, on its side of the wall) lie to one side of it. About 0
+   * among them, 1 half a sample beyond a straight rim, and growing.
+   */
+  double overhang(const Vec3& p) const;
 
 private:
   const OrientedPoints* Surface;

@@ -130,6 +130,62 @@ TEST(PointDistance, IsTheDistanceToASphereWhereItsPointsAre)
   EXPECT_GT(distance.remoteness(Vec3(0.0, 0.0, -1.0)), 5.0);
 }
 
+namespace
+{
+/// The unit sphere, its upper half with 25 times as many points as the lower one.
+std::vector<Vec3> unevenSphere()
+{
+  auto points = sphere(20000, 0.0);
+  for (const Vec3& p : sphere(800))
+  {
+    if (p[2] <= 0.0)
+    {
+      points.push_back(p);
+    }
+  }
+  return points;
+}
+} // namespace
+
+TEST(PointDistance, CoarsePointsBesideDenseOnesReachAsFarAsElsewhere)
+{
+  Monitor monitor;
+  const auto points = bsr::orientPoints(unevenSphere(), 16, monitor);
+  ASSERT_TRUE(points);
+  const bsr::PointDistance distance(*points);
+  bsr::CounterRandom random(5, 0);
+  for (int i = 0; i < 3000; ++i)
+  {
+    const double a = 6.2831853 * random.uniform();
+    const double z = -0.4 + 0.5 * random.uniform(); // about the border of the halves
+    const Vec3 n(std::sqrt(1.0 - z * z) * std::cos(a), std::sqrt(1.0 - z * z) * std::sin(a), z);
+    EXPECT_LT(distance.remoteness(n), 1.1);
+    EXPECT_LT(distance.overhang(n), 1.2);
+    EXPECT_NEAR(distance.at(n), 0.0, 0.02);
+  }
+}
+
+TEST(PointDistance, OverhangIsOneOnARim)
+{
+  Monitor monitor;
+  const auto points = bsr::orientPoints(sphere(8000, -0.3), 16, monitor);
+  ASSERT_TRUE(points);
+  const bsr::PointDistance distance(*points);
+  const double spacing = points->Spacing[0];
+  for (int i = 0; i < 60; ++i)
+  {
+    const auto at = [&](double spacings)
+    {
+      const double t = std::asin(-0.3) + spacings * spacing;
+      const double a = 0.1047 * i;
+      return distance.overhang({std::cos(t) * std::cos(a), std::cos(t) * std::sin(a), std::sin(t)});
+    };
+    EXPECT_NEAR(at(-0.4), 1.0, 0.2); // half a sample beyond the last points
+    EXPECT_LT(at(4.0), 0.3);
+    EXPECT_GT(at(-1.0), 1.3);
+  }
+}
+
 TEST(PointDistance, GridIsKnownNearPointsOnly)
 {
   Monitor monitor;

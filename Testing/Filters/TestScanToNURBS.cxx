@@ -3,6 +3,7 @@
 
 #include <vtkAppendPolyData.h>
 #include <vtkCellData.h>
+#include <vtkCleanPolyData.h>
 #include <vtkFeatureEdges.h>
 #include <vtkFlyingEdges3D.h>
 #include <vtkImageData.h>
@@ -97,6 +98,25 @@ TEST(ScanToNURBSFilter, TakesPointsWithoutTriangles)
   expectModel(filter, 2e-3, 2.0);
 }
 
+TEST(ScanToNURBSFilter, ARimOfPointsIsHeld)
+{
+  vtkNew<vtkPolyData> points;
+  points->SetPoints(scan(70.0)->GetPoints());
+  double bounds[6];
+  points->GetBounds(bounds);
+  vtkNew<vtkScanToNURBS> filter;
+  filter->SetInputDataObject(0, points);
+  filter->SetNumberOfQuads(30);
+  ErrorLog log(filter);
+  filter->Update();
+  EXPECT_TRUE(log.empty()) << log.text();
+  expectModel(filter, 2e-3, 1.0);
+  auto* model = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(vtkScanToNURBS::MODEL));
+  EXPECT_GT(openEdges(model), 0);
+  // Half a sample (0.13 along the rim) beyond the points at most.
+  EXPECT_NEAR(model->GetBounds()[4], bounds[4], 0.065);
+}
+
 TEST(ScanToNURBSFilter, LeavesSpecksOut)
 {
   vtkNew<vtkSphereSource> speck;
@@ -148,6 +168,81 @@ TEST(ScanToNURBSFilter, TakesMoreQuadsWhereTooFewWereAskedFor)
   auto* report = filter->GetOutputDataObject(vtkScanToNURBS::REPORT);
   EXPECT_EQ(bsrtest::fieldValue(report, "FailedQuads"), 0.0);
   EXPECT_GE(bsrtest::fieldValue(report, "MoreQuadsRounds"), 1.0);
+}
+
+TEST(ScanToNURBSFilter, DisconnectedScansBecomeAShellEach)
+{
+  vtkNew<vtkSphereSource> second;
+  second->SetThetaResolution(40);
+  second->SetPhiResolution(30);
+  second->SetRadius(0.8);
+  second->SetCenter(3.0, 0.0, 0.0);
+  vtkNew<vtkAppendPolyData> both;
+  both->AddInputData(scan(0.0));
+  both->AddInputConnection(second->GetOutputPort());
+  vtkNew<vtkScanToNURBS> filter;
+  filter->SetInputConnection(both->GetOutputPort());
+  filter->SetNumberOfQuads(60);
+  ErrorLog log(filter);
+  filter->Update();
+  EXPECT_TRUE(log.empty()) << log.text();
+  expectModel(filter, 1e-3, 4.0);
+  EXPECT_EQ(
+    openEdges(vtkPolyData::SafeDownCast(filter->GetOutputDataObject(vtkScanToNURBS::MODEL))), 0);
+}
+
+/// Two spheres that share one vertex: no manifold there.
+TEST(ScanToNURBSFilter, NonManifoldVerticesAreTakenApart)
+{
+  vtkNew<vtkSphereSource> lower;
+  lower->SetThetaResolution(40);
+  lower->SetPhiResolution(30);
+  lower->SetRadius(0.8);
+  lower->SetCenter(0.0, 0.0, -1.8); // its north pole is the other's south pole
+  vtkNew<vtkAppendPolyData> both;
+  both->AddInputData(scan(0.0));
+  both->AddInputConnection(lower->GetOutputPort());
+  vtkNew<vtkCleanPolyData> pinched;
+  pinched->SetInputConnection(both->GetOutputPort());
+  pinched->SetTolerance(1e-6);
+  pinched->Update();
+  ASSERT_EQ(pinched->GetOutput()->GetNumberOfPoints() + 1, both->GetOutput()->GetNumberOfPoints());
+  vtkNew<vtkScanToNURBS> filter;
+  filter->SetInputConnection(pinched->GetOutputPort());
+  filter->SetNumberOfQuads(60);
+  ErrorLog log(filter);
+  filter->Update();
+  EXPECT_TRUE(log.empty()) << log.text();
+  expectModel(filter, 1e-3, 4.0);
+}
+
+TEST(ScanToNURBSFilter, HolesThatAreTooLargeStay)
+{
+  vtkNew<vtkScanToNURBS> filter;
+  filter->SetInputDataObject(0, scan(20.0));
+  filter->SetNumberOfQuads(30);
+  filter->SetMaximumHoleSize(0.05);
+  ErrorLog log(filter);
+  filter->Update();
+  EXPECT_TRUE(log.empty()) << log.text();
+  expectModel(filter, 1e-3, 1.0);
+  EXPECT_EQ(
+    bsrtest::fieldValue(filter->GetOutputDataObject(vtkScanToNURBS::REPORT), "LeftHoles"), 1.0);
+}
+
+TEST(ScanToNURBSFilter, AnUnreachableToleranceIsABestEffort)
+{
+  vtkNew<vtkScanToNURBS> filter;
+  filter->SetInputDataObject(0, scan(0.0));
+  filter->SetNumberOfQuads(24);
+  filter->SetTolerance(1e-12);
+  ErrorLog log(filter);
+  filter->Update();
+  EXPECT_TRUE(log.empty()) << log.text();
+  expectModel(filter, 1e-3, 2.0);
+  auto* report = vtkTable::SafeDownCast(filter->GetOutputDataObject(vtkScanToNURBS::REPORT));
+  EXPECT_EQ(bsrtest::fieldValue(report, "PatchesAboveTolerance"),
+    static_cast<double>(report->GetNumberOfRows()));
 }
 
 TEST(ScanToNURBSFilter, BadInputGivesOneErrorAndNoOutput)
