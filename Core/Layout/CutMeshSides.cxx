@@ -5,11 +5,14 @@
 #include <queue>
 #include <set>
 #include <unordered_map>
+#include <unordered_set>
 
 namespace bsr
 {
 namespace
 {
+constexpr Index MostGrowth = 6; ///< of the triangles while sides are laid: they run in spirals
+
 double toSegment(const Vec3& p, const Vec3& a, const Vec3& b)
 {
   const double l = (b - a).squaredNorm();
@@ -208,7 +211,7 @@ std::vector<Index> CutMesh::flood(Index face) const
 {
   const TriangleSurface& s = this->Surface;
   std::vector<Index> faces{face};
-  std::set<Index> seen{face};
+  std::unordered_set<Index> seen{face};
   for (std::size_t i = 0; i < faces.size(); ++i)
   {
     for (Index h = 3 * faces[i]; h < 3 * faces[i] + 3; ++h)
@@ -227,7 +230,7 @@ std::vector<Index> CutMesh::flood(Index face) const
 bool CutMesh::findQuad(const LayoutGraph& graph, Index quad)
 {
   TriangleSurface& s = this->Surface;
-  std::set<Index> border;
+  std::unordered_set<Index> border;
   Index first = -1;
   for (int k = 0; k < 4; ++k)
   {
@@ -242,16 +245,17 @@ bool CutMesh::findQuad(const LayoutGraph& graph, Index quad)
       border.insert(first);
     }
   }
-  std::vector<Index> faces = this->flood(first / 3);
-  std::set<Index> vertices;
+  std::vector<Index> faces{first / 3};
+  std::unordered_set<Index> seen{first / 3};
+  std::unordered_set<Index> vertices;
   std::size_t creases = 0;
-  for (const Index f : faces)
+  for (std::size_t i = 0; i < faces.size(); ++i)
   {
-    if (s.Region[f] != Unknown)
+    if (s.Region[faces[i]] != Unknown)
     {
       return false; // a hole, or another quad's
     }
-    for (Index h = 3 * f; h < 3 * f + 3; ++h)
+    for (Index h = 3 * faces[i]; h < 3 * faces[i] + 3; ++h)
     {
       vertices.insert(s.start(h));
       if (s.Crease[h])
@@ -261,6 +265,10 @@ bool CutMesh::findQuad(const LayoutGraph& graph, Index quad)
         {
           return false;
         }
+      }
+      else if (seen.insert(s.Opposite[h] / 3).second)
+      {
+        faces.push_back(s.Opposite[h] / 3);
       }
     }
   }
@@ -346,7 +354,8 @@ Result<int> CutMesh::laySides(
   std::vector<Index> sides = order.Edges;
   std::size_t tries = order.EndOfLoops - order.FirstLoop; // of a side later, after the other loops
   tries *= tries;
-  for (std::size_t i = 0; i < sides.size(); ++i)
+  const Index most = MostGrowth * this->Surface.faces();
+  for (std::size_t i = 0; i < sides.size() && this->Surface.faces() < most; ++i)
   {
     if (monitor.cancelled())
     {

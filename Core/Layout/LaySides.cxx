@@ -10,7 +10,7 @@ namespace
 {
 constexpr int Attempts = 3;     ///< short orders
 constexpr int Rings = 5;        ///< of quads around failed ones that are laid again
-constexpr int SafeAttempts = 6; ///< spanning trees for all sides
+constexpr int SafeAttempts = 4; ///< spanning trees for all sides
 constexpr double Detour = 3.0;  ///< of a side's length over that of the straight line
 
 double chord(const QuadMesh& layout, const LayoutGraph& graph, Index edge)
@@ -52,7 +52,7 @@ public:
       }
       this->Watch.progress(0.5 + 0.2 * (ring + 1) / Rings);
     }
-    for (int i = 0; i < SafeAttempts && !this->sound(); ++i)
+    for (int i = 0; i<SafeAttempts&& this->Best.Failed> 0; ++i)
     {
       if (Status s = this->lay(this->Base, safeOrder(this->Graph, this->costs(i))); !s)
       {

@@ -24,7 +24,8 @@ std::vector<std::uint8_t> detours(
  * Lays the sides of a layout on a surface: shortest first, with those that failed first in further
  * attempts; then what failed and more and more around it, and at last all of them, in an order that
  * leads to discs whatever way sides take (see safeOrder). Of several results the one with fewest
- * failed quads, then of least length is taken; the search ends early where no side is a detour.
+ * failed quads, then of least length is taken. Short orders are tried until no side is a detour,
+ * the others only where quads fail.
  */
 Result<LaidSides> laySides(
   const CutMesh& base, const QuadMesh& layout, const LayoutGraph& graph, Monitor& monitor);

@@ -1,8 +1,12 @@
 #include "CADFile.h"
 #include "vtkScanToNURBS.h"
 
+#include <vtkCleanPolyData.h>
+#include <vtkFlyingEdges3D.h>
 #include <vtkPolyData.h>
+#include <vtkPolyDataConnectivityFilter.h>
 #include <vtkTable.h>
+#include <vtkXMLImageDataReader.h>
 #include <vtkXMLPolyDataReader.h>
 
 #include <algorithm>
@@ -24,6 +28,38 @@ void PrintTo(const Scan& s, std::ostream* out)
   *out << s.File;
 }
 
+/// The largest isosurface of a volume.
+vtkSmartPointer<vtkPolyData> isosurface(const std::string& path, double value)
+{
+  vtkNew<vtkXMLImageDataReader> volume;
+  volume->SetFileName(path.c_str());
+  vtkNew<vtkFlyingEdges3D> surface;
+  surface->SetInputConnection(volume->GetOutputPort());
+  surface->SetValue(0, value);
+  surface->ComputeNormalsOff();
+  vtkNew<vtkPolyDataConnectivityFilter> largest;
+  largest->SetInputConnection(surface->GetOutputPort());
+  largest->SetExtractionModeToLargestRegion();
+  vtkNew<vtkCleanPolyData> used;
+  used->SetInputConnection(largest->GetOutputPort());
+  used->PointMergingOff();
+  used->ConvertPolysToLinesOff();
+  used->Update();
+  return used->GetOutput();
+}
+
+vtkSmartPointer<vtkPolyData> surfaceOf(const std::string& path)
+{
+  if (path.substr(path.size() - 4) == ".vti")
+  {
+    return isosurface(path, 560.0);
+  }
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  return reader->GetOutput();
+}
+
 class ScanToSolid : public testing::TestWithParam<Scan>
 {
 };
@@ -33,11 +69,9 @@ class ScanToSolid : public testing::TestWithParam<Scan>
 TEST_P(ScanToSolid, IsValidInOpenCASCADE)
 {
   const Scan scan = GetParam();
-  BSR_SHARED_DATA_OR_SKIP(path, std::string(scan.File) + ".vtp");
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName(path.c_str());
+  BSR_SHARED_DATA_OR_SKIP(path, scan.File);
   vtkNew<vtkScanToNURBS> filter;
-  filter->SetInputConnection(reader->GetOutputPort());
+  filter->SetInputDataObject(0, surfaceOf(path));
   filter->SetNumberOfQuads(120);
   ErrorLog log(filter);
   filter->Update();
@@ -55,11 +89,12 @@ TEST_P(ScanToSolid, IsValidInOpenCASCADE)
 }
 
 INSTANTIATE_TEST_SUITE_P(Samples, ScanToSolid,
-  testing::Values(Scan{"stanford-bunny", 2, true}, Scan{"rocker-arm", 0, true},
-    Scan{"mechpart_recon", -4, true}, Scan{"femur_12", 1, false}, Scan{"distcap", 1, false}),
+  testing::Values(Scan{"stanford-bunny.vtp", 2, true}, Scan{"rocker-arm.vtp", 0, true},
+    Scan{"mechpart_recon.vtp", -4, true}, Scan{"femur_12.vtp", 1, false},
+    Scan{"distcap.vtp", 1, false}, Scan{"tooth.vti", 2, true}),
   [](const testing::TestParamInfo<Scan>& info)
   {
-    std::string name = info.param.File;
+    std::string name(info.param.File, std::string(info.param.File).rfind('.'));
     name.erase(std::remove_if(name.begin(), name.end(), [](char c) { return !std::isalnum(c); }),
       name.end());
     return name;
