@@ -64,8 +64,8 @@ void reportTo(const std::vector<bsr::SkinReport>& rows, vtkTable* table)
   real("AverageErrorPerControlPoint", [](const R& r) { return r.AverageErrorPerControlPoint; });
   real("RMS", [](const R& r) { return r.Rms; });
   real("Max", [](const R& r) { return r.Max; });
-  real("ResliceRMS", [](const R& r) { return r.Measures.ResliceRms; });
-  real("ResliceMax", [](const R& r) { return r.Measures.ResliceMax; });
+  real("ResliceRMS", [](const R& r) { return r.Measures.Reslice.RMS; });
+  real("ResliceMax", [](const R& r) { return r.Measures.Reslice.max(); });
   real("PointSpacing", [](const R& r) { return r.PointSpacing; });
   real("SecondDerivativeJump", [](const R& r) { return r.Measures.SecondDerivativeJump; });
   real("NormalJump", [](const R& r) { return r.NormalJump; });
@@ -109,7 +109,7 @@ void totalsTo(const bsr::ContourSkinResult& result, double seconds, vtkFieldData
     contours += r.Contours;
     squares += r.Contours * r.Rms * r.Rms;
     average += r.Contours * r.AverageError;
-    reslice += r.Contours * r.Measures.ResliceRms * r.Measures.ResliceRms;
+    reslice += r.Contours * r.Measures.Reslice.RMS * r.Measures.Reslice.RMS;
     largest = std::max(largest, r.Max);
     jump = std::max(jump, r.NormalJump);
     folded += r.FoldedPatches;

@@ -505,6 +505,17 @@ private:
     return out;
   }
 
+  /// Share of column k of an arc: at equal steps of its match, so that what is long on either of
+  /// the two contours (a bay that opens between them) gets its columns.
+  static double placeOn(const ArcEnd& a, int k)
+  {
+    const double x =
+      static_cast<double>(k) / a.Arc->Spans * static_cast<double>(a.places().size() - 1);
+    const auto i = std::min(static_cast<std::size_t>(x), a.places().size() - 2);
+    const double r = x - static_cast<double>(i);
+    return a.share() + a.length() * ((1.0 - r) * a.places()[i] + r * a.places()[i + 1]);
+  }
+
   /// The same for a tube that starts freely: from its upper end, or evenly.
   std::vector<std::vector<double>> carriedDown(Index t) const
   {
@@ -516,12 +527,7 @@ private:
     {
       for (int k = 0; k < a.Arc->Spans; ++k)
       {
-        const double x =
-          static_cast<double>(k) / a.Arc->Spans * static_cast<double>(a.places().size() - 1);
-        const auto i = std::min(static_cast<std::size_t>(x), a.places().size() - 2);
-        const double r = x - static_cast<double>(i);
-        anchors.push_back({(a.column() + k) % n,
-          a.share() + a.length() * ((1.0 - r) * a.places()[i] + r * a.places()[i + 1])});
+        anchors.push_back({(a.column() + k) % n, placeOn(a, k)});
       }
     }
     std::vector<std::vector<double>> out(1);
@@ -555,15 +561,12 @@ private:
     }
     const int n = this->Net.Tubes[t].Columns;
     std::vector<double> shift(static_cast<std::size_t>(n), 0.0);
-    for (std::size_t a = 0; a < arcs.size(); ++a)
+    for (const ArcEnd& a : arcs)
     {
-      const ArcEnd& next = arcs[(a + 1) % arcs.size()];
-      const double from = wrapped(arcs[a].share() - shares.back()[arcs[a].column()]);
-      const double to = wrapped(next.share() - shares.back()[next.column()]);
-      for (int k = 0; k < arcs[a].Arc->Spans; ++k)
+      for (int k = 0; k < a.Arc->Spans; ++k)
       {
-        const double r = static_cast<double>(k) / arcs[a].Arc->Spans;
-        shift[(arcs[a].column() + k) % n] = (1.0 - r) * from + r * to;
+        const int u = (a.column() + k) % n;
+        shift[u] = wrapped(placeOn(a, k) - shares.back()[u]);
       }
     }
     const std::size_t m = shares.size();

@@ -40,13 +40,13 @@ double sectionError(const ArcCurve& curve, int order, int n)
 int columnsNeeded(const Contour& contour, int order, double tolerance)
 {
   const ArcCurve curve(contour.Points, true);
-  for (const int n : {16, 20, 24, 32, 40, 48, 64, 80, 96})
+  for (const int n : {16, 20, 24, 32, 40, 48, 64, 80, 96, 128, 160, 192})
   {
     if (sectionError(curve, order, n) <= tolerance)
     {
       return n;
     }
   }
-  return 128;
+  return 224;
 }
 } // namespace bsr

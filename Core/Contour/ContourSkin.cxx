@@ -303,19 +303,12 @@ private:
     const std::vector<LegEnd>& ends, SkinMeasures& out)
   {
     Monitor quiet;
-    const auto s = sampleModel(model, {}, quiet);
-    std::vector<std::array<int, 3>> triangles;
-    for (const auto& q : s ? s->Polygons : std::vector<std::array<Index, 4>>())
+    if (const auto r = resliceError(model, this->Out.Stack, contours, quiet))
     {
-      triangles.push_back({q[0], q[1], q[2]});
-      if (q[3] >= 0)
-      {
-        triangles.push_back({q[0], q[2], q[3]});
-      }
+      out.Reslice = *r;
     }
-    if (s)
+    if (const auto s = sampleModel(model, {}, quiet))
     {
-      resliceErrors(this->Out.Stack, contours, s->Points, triangles, out);
       measureEnds(this->Out.Stack, ends, s->Points, s->Normals, out);
     }
   }

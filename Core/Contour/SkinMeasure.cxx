@@ -10,52 +10,6 @@ namespace bsr
 {
 namespace
 {
-using Segment = std::array<Vec3, 2>;
-
-double distanceTo(const std::vector<Segment>& segments, const Vec3& p)
-{
-  double best = std::numeric_limits<double>::infinity();
-  for (const Segment& s : segments)
-  {
-    const Vec3 d = s[1] - s[0];
-    const double l = d.squaredNorm();
-    const double t = l > 0.0 ? std::clamp(d.dot(p - s[0]) / l, 0.0, 1.0) : 0.0;
-    best = std::min(best, (s[0] + t * d - p).squaredNorm());
-  }
-  return std::sqrt(best);
-}
-
-/// Segments in which triangles meet a plane.
-std::vector<Segment> section(const std::vector<Vec3>& points,
-  const std::vector<std::array<int, 3>>& triangles, const Slice& slice)
-{
-  std::vector<double> h;
-  for (const Vec3& p : points)
-  {
-    h.push_back(slice.Normal.dot(p - slice.Origin));
-  }
-  std::vector<Segment> cut;
-  for (const auto& t : triangles)
-  {
-    std::vector<Vec3> ends;
-    for (int e = 0; e < 3; ++e)
-    {
-      const int i = t[e];
-      const int j = t[(e + 1) % 3];
-      if ((h[i] > 0.0) != (h[j] > 0.0))
-      {
-        const double share = h[i] / (h[i] - h[j]);
-        ends.emplace_back((1.0 - share) * points[i] + share * points[j]);
-      }
-    }
-    if (ends.size() == 2)
-    {
-      cut.push_back({ends[0], ends[1]});
-    }
-  }
-  return cut;
-}
-
 /// An end of a leg by its points, normals outward: convex where nothing of it lies above the
 /// tangent plane.
 void judgeEnd(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, double height,
@@ -124,43 +78,6 @@ void measureEnds(const ContourStack& stack, const std::vector<LegEnd>& ends,
   }
 }
 
-void resliceErrors(const ContourStack& stack, const std::vector<Index>& contours,
-  const std::vector<Vec3>& points, const std::vector<std::array<int, 3>>& triangles,
-  SkinMeasures& out)
-{
-  std::vector<std::vector<Segment>> lines(stack.Slices.size());
-  for (const Index i : contours)
-  {
-    const Contour& c = stack.Contours[i];
-    for (std::size_t k = 0; k < c.Points.size(); ++k)
-    {
-      lines[c.Slice].push_back({c.Points[k], c.Points[(k + 1) % c.Points.size()]});
-    }
-  }
-  double sum = 0.0;
-  std::int64_t count = 0;
-  const auto add = [&](double d)
-  {
-    sum += d * d;
-    ++count;
-    out.ResliceMax = std::max(out.ResliceMax, d);
-  };
-  for (std::size_t s = 0; s < lines.size(); ++s)
-  {
-    const std::vector<Segment> cut =
-      lines[s].empty() ? std::vector<Segment>() : section(points, triangles, stack.Slices[s]);
-    for (const Segment& l : lines[s])
-    {
-      add(cut.empty() ? stack.meanDiameter() : distanceTo(cut, l[0]));
-    }
-    for (const Segment& l : cut)
-    {
-      add(distanceTo(lines[s], 0.5 * (l[0] + l[1])));
-    }
-  }
-  out.ResliceRms = count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0.0;
-}
-
 namespace
 {
 class Meter
@@ -177,7 +94,6 @@ public:
 
   SkinMeasures run()
   {
-    this->sample();
     std::vector<Index> contours;
     for (const SkinRing& r : this->Grid.Rings)
     {
@@ -186,7 +102,11 @@ public:
         contours.push_back(r.Contour);
       }
     }
-    resliceErrors(this->Stack, contours, this->Points, this->Triangles, this->Out);
+    Monitor quiet;
+    if (const auto r = resliceError(this->Model, this->Stack, contours, quiet))
+    {
+      this->Out.Reslice = *r;
+    }
     this->jumps();
     for (Index r = 0; r < static_cast<Index>(this->Grid.Rings.size()); ++r)
     {
@@ -203,42 +123,6 @@ private:
   SurfacePoint at(const Vec2& uv) const
   {
     return evaluatePatch(this->Model, this->Patch, uv.x(), uv.y());
-  }
-
-  void sample()
-  {
-    constexpr int Fine = 4;
-    std::array<std::vector<double>, 2> t;
-    for (const int d : {0, 1})
-    {
-      const std::vector<double> ends = pieceEnds(this->Model, this->Patch, d);
-      for (std::size_t k = 0; k + 1 < ends.size(); ++k)
-      {
-        for (int i = 0; i < Fine; ++i)
-        {
-          t[d].push_back(ends[k] + (ends[k + 1] - ends[k]) * i / Fine);
-        }
-      }
-      t[d].push_back(ends.back());
-    }
-    for (const double v : t[1])
-    {
-      for (const double u : t[0])
-      {
-        this->Points.push_back(this->at({u, v}).Point);
-      }
-    }
-    const auto wide = static_cast<int>(t[0].size());
-    const auto high = static_cast<int>(t[1].size());
-    for (int j = 0; j + 1 < high; ++j)
-    {
-      for (int i = 0; i + 1 < wide; ++i)
-      {
-        const int k = j * wide + i;
-        this->Triangles.push_back({k, k + 1, k + wide + 1});
-        this->Triangles.push_back({k, k + wide + 1, k + wide});
-      }
-    }
   }
 
   void jumps()
@@ -336,8 +220,6 @@ private:
   const SkinSurface& Surface;
   SplineModel Model;
   const SplinePatch& Patch;
-  std::vector<Vec3> Points;
-  std::vector<std::array<int, 3>> Triangles;
   SkinMeasures Out;
 };
 } // namespace

@@ -1,14 +1,14 @@
 #pragma once
 
 #include "Contour/SkinFit.h"
+#include "Contour/SurfaceReport.h"
 
 namespace bsr
 {
 /// What a finished skin is measured by. Lengths are in world units.
 struct SkinMeasures
 {
-  double ResliceRms = 0.0; ///< between the contours and the surface cut by their planes
-  double ResliceMax = 0.0;
+  ResliceError Reslice; ///< contours in whose plane the surface ends are left out
   /// Largest jump of a second derivative across a knot over the largest second derivative.
   double SecondDerivativeJump = 0.0;
   double EndHeight = 0.0;   ///< highest end of a leg over its last contour, in slice distances
@@ -17,12 +17,6 @@ struct SkinMeasures
   int SignChangesData = 0;  ///< of the curvature along the contours
   int SignChangesModel = 0; ///< along the surface at the same samples
 };
-
-/// ResliceRms and ResliceMax of a triangulated surface: it is cut by the planes of the contours,
-/// and distances are taken both ways. A contour that the surface misses counts as a mean diameter.
-void resliceErrors(const ContourStack& stack, const std::vector<Index>& contours,
-  const std::vector<Vec3>& points, const std::vector<std::array<int, 3>>& triangles,
-  SkinMeasures& out);
 
 /// Where a leg ends: its last contour, the direction out of it, the distance to the next slice.
 struct LegEnd

@@ -153,7 +153,7 @@ SliceError compareSlice(const SampledModel& mesh, const ContourStack& stack, std
     return out;
   }
   const Vec3 normal = planeNormal(points, slice.Normal);
-  Vec3 origin = 1e-4 * inside * stack.spacing() * stack.Axis;
+  Vec3 origin = 1e-3 * inside * stack.spacing() * stack.Axis;
   for (const Vec3& p : points)
   {
     origin += p / static_cast<double>(points.size());
@@ -161,6 +161,7 @@ SliceError compareSlice(const SampledModel& mesh, const ContourStack& stack, std
   const std::vector<Segment> cut = cutBy(mesh, origin, normal);
   if (cut.empty())
   {
+    out.There.assign(points.size(), stack.meanDiameter());
     return out;
   }
   out.There = distancesTo(cut, points);
@@ -335,6 +336,16 @@ Result<ResliceError> resliceError(const SplineModel& model, const ContourStack& 
     back.insert(back.end(), e.Back.begin(), e.Back.end());
   }
   ResliceError out;
+  double sum = 0.0;
+  for (const double d : there)
+  {
+    sum += d * d;
+  }
+  for (const double d : back)
+  {
+    sum += d * d;
+  }
+  out.RMS = std::sqrt(sum / std::max<double>(1.0, static_cast<double>(there.size() + back.size())));
   out.There = percentilesOf(std::move(there));
   out.Back = percentilesOf(std::move(back));
   return out;

@@ -5,6 +5,8 @@
 #include "Contour/ContourStack.h"
 #include "Spline/SplineModel.h"
 
+#include <algorithm>
+
 namespace bsr
 {
 /// Share of values: 50, 75, 90, 95, 99 %, and the largest.
@@ -38,12 +40,17 @@ Result<InputError> inputError(const SplineModel& model, const ContourStack& stac
 
 /**
  * Re-slicing: the model cut by the planes of the slices again. `There`: distances of the contours'
- * points from the cut; `Back`: of the cut from the contours of its slice.
+ * points from the cut; `Back`: of the cut from the contours of its slice. The plane is the one that
+ * fits the slice's contours; first and last slices are cut a thousandth of the slices' distance
+ * inside, as the surface may end in the plane. Where a slice is not cut at all, its points count
+ * with the mean diameter of the contours.
  */
 struct ResliceError
 {
   Percentiles There;
   Percentiles Back;
+  double RMS = 0.0; ///< of both together
+  double max() const { return std::max(this->There.Value[5], this->Back.Value[5]); }
 };
 Result<ResliceError> resliceError(const SplineModel& model, const ContourStack& stack,
   const std::vector<Index>& contours, Monitor& monitor);

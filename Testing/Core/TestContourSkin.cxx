@@ -297,7 +297,7 @@ TEST(ContourSkin, LegsOnBothSidesMakeAClosedSurface)
   EXPECT_GT(r.Measures.EndHeight, 0.1);
   EXPECT_LT(r.Measures.EndHeight, 1.0);
   EXPECT_GT(r.Measures.ConvexShare, 0.8);
-  EXPECT_LT(r.Measures.ResliceRms, r.PointSpacing);
+  EXPECT_LT(r.Measures.Reslice.RMS, r.PointSpacing);
   EXPECT_NEAR(r.AverageErrorPerControlPoint,
     r.TotalError / static_cast<double>(result->Model.ControlPoints.size()), 1e-12);
   EXPECT_NEAR(r.AverageError, r.Rms * r.Rms, 1e-12);
