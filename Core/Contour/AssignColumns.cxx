@@ -17,20 +17,6 @@ constexpr double HubColumns = 96.0; ///< of a branch, at most, for the sake of a
 constexpr double Relaxation = 0.15; ///< a slice, of the columns towards equal spacing
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 
-/// An arc of a junction as one of the tubes at it sees it.
-struct ArcEnd
-{
-  JunctionArc* Arc;
-  bool Stem;
-  double share() const { return this->Stem ? this->Arc->StemShare : this->Arc->BranchShare; }
-  double length() const { return this->Stem ? this->Arc->StemLength : this->Arc->BranchLength; }
-  const std::vector<double>& places() const
-  {
-    return this->Stem ? this->Arc->Match.Second : this->Arc->Match.First;
-  }
-  int& column() const { return this->Stem ? this->Arc->StemColumn : this->Arc->BranchColumn; }
-};
-
 /**
  * Columns go upward: tubes that start freely choose their number; at the upper end of a tube the
  * columns next to the crotches become its corners, and all columns go on into the tubes above at

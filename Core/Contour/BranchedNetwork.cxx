@@ -36,13 +36,19 @@ public:
   }
 
 private:
-  bool usable(Index c) const { return this->Stack.Contours[c].Closed; }
+  bool wanted(Index c) const
+  {
+    const auto& of = this->Options.Components;
+    return of.empty() ||
+           std::binary_search(of.begin(), of.end(), this->Stack.Contours[c].Component);
+  }
+  bool usable(Index c) const { return this->Stack.Contours[c].Closed && this->wanted(c); }
 
   void takeLinks()
   {
     for (std::size_t c = 0; c < this->Stack.Contours.size(); ++c)
     {
-      if (!this->usable(static_cast<Index>(c)))
+      if (!this->Stack.Contours[c].Closed && this->wanted(static_cast<Index>(c)))
       {
         this->Net.Notes.push_back({this->Stack.Contours[c].Source,
           "open contour left out: branched surfaces are made of closed ones; use ContourSkin"});
@@ -107,7 +113,8 @@ private:
     for (std::size_t c = 0; c < this->Stack.Contours.size(); ++c)
     {
       const Contour& h = this->Stack.Contours[c];
-      if (!h.Closed || !h.hole() || h.Parent < 0)
+      if (!this->usable(static_cast<Index>(c)) || !h.hole() || h.Parent < 0 ||
+          !this->usable(h.Parent))
       {
         continue;
       }
@@ -228,8 +235,12 @@ private:
         this->Stack.Contours[t.Contours.back()].Slice < last};
       for (int e = 0; e < 2; ++e)
       {
-        t.Capped[e] = t.Junctions[e] < 0 && (this->Options.Caps == EndCaps::All ||
-                                              (this->Options.Caps == EndCaps::Inside && inside[e]));
+        const Index c = e == 1 ? t.Contours.back() : t.Contours.front();
+        const bool closed = !this->Options.ClosedEnds.empty()
+                              ? this->Options.ClosedEnds[c][e]
+                              : this->Options.Caps == EndCaps::All ||
+                                  (this->Options.Caps == EndCaps::Inside && inside[e]);
+        t.Capped[e] = t.Junctions[e] < 0 && closed;
       }
     }
   }

@@ -86,6 +86,9 @@ struct NetworkOptions
   double SectionTolerance = 0.1; ///< then: of the median distance of their points
   double Refinement = 1.0;       ///< factor on the columns that tubes need
   EndCaps Caps = EndCaps::Inside;
+  /// Lower and upper end of each contour of the stack, where it is the end of a tube; empty: Caps.
+  std::vector<std::array<bool, 2>> ClosedEnds;
+  std::vector<Index> Components; ///< of the stack, only these, sorted; empty: all
 };
 
 /**

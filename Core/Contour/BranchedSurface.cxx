@@ -20,6 +20,10 @@ Status checkOptions(const BranchedOptions& o)
   {
     return Status::invalidParameter("PointsPerSection must be 0 (automatic) or 8 to 512.");
   }
+  if (!(o.CapHeight > 0.0) || !(o.CapHeight <= 10.0))
+  {
+    return Status::invalidParameter("CapHeight must be above 0 and at most 10.");
+  }
   if (!(o.SectionTolerance > 0.0) || !(o.JunctionPosition >= 0.0) || !(o.JunctionPosition < 1.0))
   {
     return Status::invalidParameter(
@@ -54,7 +58,8 @@ public:
         Options(options),
         Rows(rows),
         Sections(sectionRows(stack, net, options)),
-        Best(net.Junctions.size() + 2 * net.Tubes.size())
+        Best(net.Junctions.size() + 2 * net.Tubes.size()),
+        Fine(net.Tubes.size(), 0)
   {
     this->Choices.Junctions.assign(net.Junctions.size(), rows);
     this->Choices.Caps.assign(net.Tubes.size(), {rows, rows});
@@ -153,6 +158,10 @@ private:
     for (std::size_t p = 0; p < s.Jacobians.size(); ++p)
     {
       folded[this->placeOf(s.Origins[p])] += s.Jacobians[p] < 0.0 ? 1 : 0;
+      if (s.Jacobians[p] < 0.0 && s.Origins[p].Cap < 0)
+      {
+        this->Fine[s.Origins[p].Tube] = 1;
+      }
     }
     for (std::size_t k = 0; k < folded.size(); ++k)
     {
@@ -165,7 +174,8 @@ private:
 
   BranchedSurface build() const
   {
-    const InsertedRows inserted = insertRows(this->Stack, this->Net, this->Sections, this->Choices);
+    const InsertedRows inserted =
+      insertRows(this->Stack, this->Net, this->Sections, this->Choices, this->Options.CapHeight);
     std::vector<TubeSurface> tubes(this->Net.Tubes.size());
     parallelFor(0, static_cast<std::int64_t>(tubes.size()), 1,
       [&](std::int64_t begin, std::int64_t end)
@@ -173,7 +183,7 @@ private:
         for (std::int64_t t = begin; t < end; ++t)
         {
           tubes[t] = makeTube(this->Net, static_cast<Index>(t), this->Sections[t], inserted,
-            this->Options, this->Rows);
+            this->Options, this->Rows, this->Fine[t] != 0);
         }
       });
     BranchedSurface s = assemblePatches(this->Stack, this->Net, tubes, inserted, this->Options);
@@ -190,6 +200,7 @@ private:
   const std::vector<std::vector<ControlRow>> Sections;
   std::vector<Known> Best; ///< of each junction, then of the two ends of each tube
   RowChoices Choices;
+  std::vector<char> Fine; ///< whether a tube has short patches along v
 };
 } // namespace
 
@@ -205,6 +216,8 @@ Result<BranchedSurface> makeBranchedSurface(
   no.PointsPerSection = options.PointsPerSection;
   no.SectionTolerance = options.SectionTolerance;
   no.Caps = options.Caps;
+  no.ClosedEnds = options.ClosedEnds;
+  no.Components = options.Components;
   RowOptions rows;
   rows.OrderU = options.OrderU;
   rows.OrderV = options.OrderV;

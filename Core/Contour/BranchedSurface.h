@@ -15,8 +15,11 @@ struct BranchedOptions
   bool PeriodicKnots = false; ///< along v, at open ends (section 7); else open uniform ones
   bool Interpolate = true;    ///< the contours are data; else they are control polygons
   EndCaps Caps = EndCaps::Inside;
-  int PointsPerSection = 0;      ///< columns of a contour; 0: as its shape needs
-  double SectionTolerance = 0.1; ///< then: deviation, in distances of its points
+  double CapHeight = 0.5;                      ///< in slice distances, above 0
+  std::vector<std::array<bool, 2>> ClosedEnds; ///< see NetworkOptions
+  std::vector<Index> Components;               ///< of the stack, only these; empty: all
+  int PointsPerSection = 0;                    ///< columns of a contour; 0: as its shape needs
+  double SectionTolerance = 0.1;               ///< then: deviation, in distances of its points
   double JunctionPosition = 0.0; ///< height of the crotch between branch (0) and stem (1); 0: auto
 };
 
@@ -83,13 +86,16 @@ struct RowChoices
   std::vector<std::array<RowOptions, 2>> Caps;
 };
 
+/// \param capHeight see BranchedOptions
 InsertedRows insertRows(const ContourStack& stack, const BranchedNetwork& net,
-  const std::vector<std::vector<ControlRow>>& sections, const RowChoices& choices);
+  const std::vector<std::vector<ControlRow>>& sections, const RowChoices& choices,
+  double capHeight);
 
 /// Solves along v and puts all rows together.
+/// \param fine short patches along v, where long ones fold or bend more than samples tell
 TubeSurface makeTube(const BranchedNetwork& net, Index tube,
   const std::vector<ControlRow>& sections, const InsertedRows& inserted,
-  const BranchedOptions& options, const RowOptions& rows);
+  const BranchedOptions& options, const RowOptions& rows, bool fine);
 
 /// Patches of all tubes and caps with their neighbors.
 BranchedSurface assemblePatches(const ContourStack& stack, const BranchedNetwork& net,

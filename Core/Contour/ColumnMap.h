@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Contour/MatchArcs.h"
+#include "Contour/BranchedNetwork.h"
 
 #include <algorithm>
 #include <cmath>
@@ -102,6 +102,20 @@ private:
 
   std::vector<Anchor> Anchors;
   int N;
+};
+
+/// An arc of a junction as one of the tubes at it sees it.
+struct ArcEnd
+{
+  JunctionArc* Arc;
+  bool Stem;
+  double share() const { return this->Stem ? this->Arc->StemShare : this->Arc->BranchShare; }
+  double length() const { return this->Stem ? this->Arc->StemLength : this->Arc->BranchLength; }
+  const std::vector<double>& places() const
+  {
+    return this->Stem ? this->Arc->Match.Second : this->Arc->Match.First;
+  }
+  int& column() const { return this->Stem ? this->Arc->StemColumn : this->Arc->BranchColumn; }
 };
 
 /// What is known of a tube's columns while they are assigned.

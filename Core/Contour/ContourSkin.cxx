@@ -1,11 +1,12 @@
 #include "Contour/ContourSkin.h"
 
-#include "Contour/SkinComplex.h"
+#include "Contour/SkinNetwork.h"
 #include "Spline/SampleModel.h"
 #include "Spline/SplitPatch.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace bsr
 {
@@ -76,17 +77,23 @@ public:
 
   Status run()
   {
-    const std::vector<SkinPiece> pieces =
-      cutPieces(this->Out.Stack, this->Options.Base, this->Out.Notes);
+    std::vector<std::vector<SkinPiece>> parts(static_cast<std::size_t>(this->Out.Stack.Components));
+    for (SkinPiece& p : cutPieces(this->Out.Stack, this->Options.Base, this->Out.Notes))
+    {
+      const Index root = p.Legs.Nodes[0].Contour;
+      parts[this->Out.Stack.Contours[root].Component].push_back(std::move(p));
+    }
+    parts.erase(std::remove_if(parts.begin(), parts.end(), [](const auto& p) { return p.empty(); }),
+      parts.end());
     const std::vector<std::vector<Index>> sheets = this->openSheets();
-    const std::size_t count = pieces.size() + sheets.size();
+    const std::size_t count = parts.size() + sheets.size();
     for (std::size_t k = 0; k < count; ++k)
     {
       const auto share = [&](std::size_t i)
       { return static_cast<double>(i) / static_cast<double>(count); };
       SubMonitor part(this->Mon, share(k), share(k + 1));
-      const Status s = k < pieces.size() ? this->skinPiece(pieces[k], part)
-                                         : this->skinSheet(sheets[k - pieces.size()], part);
+      const Status s = k < parts.size() ? this->skinPart(parts[k], part)
+                                        : this->skinSheet(sheets[k - parts.size()], part);
       if (!s)
       {
         return s;
@@ -166,12 +173,30 @@ private:
     return sheets;
   }
 
-  Status skinPiece(const SkinPiece& piece, Monitor& monitor)
+  /// One patch where the part is an open tree that it can follow, else a network.
+  Status skinPart(const std::vector<SkinPiece>& pieces, Monitor& monitor)
   {
-    if (piece.Closed)
+    const bool open =
+      std::none_of(pieces.begin(), pieces.end(), [](const SkinPiece& p) { return p.Closed; });
+    const bool single = this->Options.Layout == SkinLayout::SinglePatch && open;
+    if (!single && (!open || pieces.size() > 1))
     {
-      return this->skinClosed(piece, monitor);
+      return this->skinNetwork(pieces, monitor);
     }
+    for (std::size_t k = 0; k < pieces.size(); ++k)
+    {
+      const auto count = static_cast<double>(pieces.size());
+      SubMonitor part(monitor, static_cast<double>(k) / count, static_cast<double>(k + 1) / count);
+      if (const Status s = this->skinPiece(pieces[k], !single, part); !s)
+      {
+        return s;
+      }
+    }
+    return Status::ok();
+  }
+
+  Status skinPiece(const SkinPiece& piece, bool otherwise, Monitor& monitor)
+  {
     const ContourStack& stack = this->Out.Stack;
     std::vector<Index> contours;
     for (const SkinNode& n : piece.Legs.Nodes)
@@ -187,7 +212,7 @@ private:
     {
       caps.push_back(b);
     }
-    SubMonitor first(monitor, 0.0, 0.4);
+    SubMonitor first(monitor, 0.0, 0.6);
     Result<SkinSurface> surface = fitSkin(grid, caps, fit, first);
     if (!surface)
     {
@@ -198,20 +223,10 @@ private:
     // a limit below the default is meant: a tolerance missed under it is told, not cured
     const bool free = fit.ControlPointLimit >= SkinFitOptions().ControlPointLimit;
     const bool bad = folded > 0 || (!surface->Reached && free);
-    if (relaxed && bad && fit.CountU == 0 && this->Options.Layout == SkinLayout::Automatic)
+    if (relaxed && bad && fit.CountU == 0 && otherwise)
     {
-      SubMonitor rest(monitor, 0.4, 1.0);
-      Result<SkinComplexFit> complex = this->complexOf(asTrunk(piece), fit, rest);
-      if (complex && complex->Fit.FoldedPatches == 0 &&
-          (complex->Fit.Rms <= fit.Tolerance || complex->Fit.Rms < surface->Rms || folded > 0))
-      {
-        this->addComplex(*complex, contours, fit, false);
-        return Status::ok();
-      }
-      if (!complex && complex.status().code() == StatusCode::Cancelled)
-      {
-        return complex.status();
-      }
+      SubMonitor rest(monitor, 0.6, 1.0);
+      return this->skinNetwork({piece}, rest);
     }
     const Contour& root = stack.Contours[contours[0]];
     this->add(grid, *surface, contours, fit, piece.Legs.Up == root.hole());
@@ -229,74 +244,89 @@ private:
     return Status::ok();
   }
 
-  Status skinClosed(const SkinPiece& piece, Monitor& monitor)
+  /// The component of some contours, and those of holes in it that are alone: cavities, or bays
+  /// that close for one slice. Sorted.
+  std::vector<Index> withLonelyHoles(const std::vector<Index>& contours) const
   {
-    std::vector<Index> contours = piece.Trunk;
-    for (const SkinTree* t : {&piece.Lower, &piece.Upper})
+    const auto& all = this->Out.Stack.Contours;
+    std::vector<Index> components{all[contours[0]].Component};
+    for (const Contour& c : all)
     {
-      for (std::size_t n = 1; n < t->Nodes.size(); ++n)
+      if (c.Closed && c.hole() && c.Parent >= 0 && c.Below.empty() && c.Above.empty() &&
+          all[c.Parent].Component == components[0])
       {
-        contours.push_back(t->Nodes[n].Contour);
+        components.push_back(c.Component);
       }
     }
-    const SkinFitOptions fit = this->fitOptions(contours);
-    Result<SkinComplexFit> complex = this->complexOf(piece, fit, monitor);
-    if (!complex)
+    std::sort(components.begin(), components.end());
+    return components;
+  }
+
+  Status skinNetwork(const std::vector<SkinPiece>& pieces, Monitor& monitor)
+  {
+    std::vector<Index> contours;
+    for (const SkinPiece& p : pieces)
     {
-      return this->passOn(complex.status(), contours);
+      const std::vector<Index> own = p.contours();
+      contours.insert(contours.end(), own.begin(), own.end());
     }
-    this->addComplex(*complex, contours, fit, true);
+    const SkinFitOptions fit = this->fitOptions(contours);
+    SkinNetworkOptions options;
+    options.Tolerance = fit.Tolerance;
+    options.PointSpacing = fit.PointSpacing;
+    options.ConvexEnds = this->Options.ConvexEnds;
+    const std::vector<Index> components = this->withLonelyHoles(contours);
+    Result<SkinNetwork> network = fitNetwork(this->Out.Stack, pieces, components, options, monitor);
+    if (!network)
+    {
+      return this->passOn(network.status(), contours);
+    }
+    // what was cut to make pieces of trees is whole here
+    auto& notes = this->Out.Notes;
+    notes.erase(std::remove_if(notes.begin(), notes.end(),
+                  [&](const ContourNote& n)
+                  {
+                    return std::binary_search(components.begin(), components.end(),
+                      this->Out.Stack.Contours[n.Contour].Component);
+                  }),
+      notes.end());
+    for (const NetworkNote& n : network->Surface.Network.Notes)
+    {
+      const auto& all = this->Out.Stack.Contours;
+      const auto at = std::find_if(
+        all.begin(), all.end(), [&](const Contour& c) { return c.Source == n.Source; });
+      notes.push_back({static_cast<Index>(at - all.begin()), n.Text});
+    }
+    this->addNetwork(*network, fit);
     return Status::ok();
   }
 
-  Result<SkinComplexFit> complexOf(
-    const SkinPiece& piece, const SkinFitOptions& fit, Monitor& monitor) const
+  void addNetwork(SkinNetwork& made, const SkinFitOptions& fit)
   {
-    SkinComplexOptions options;
-    options.Tolerance = fit.Tolerance;
-    options.PointSpacing = fit.PointSpacing;
-    options.CapShare = this->Options.ConvexEnds ? 0.75 : 0.0;
-    options.CorePoints = this->Options.CorePoints;
-    return fitComplex(this->Out.Stack, piece, options, monitor);
-  }
-
-  void addComplex(SkinComplexFit& made, const std::vector<Index>& contours,
-    const SkinFitOptions& fit, bool closed)
-  {
-    G1FitResult& complex = made.Fit;
-    const Contour& root = this->Out.Stack.Contours[contours[0]];
+    const SplineModel& model = made.Surface.Model;
+    const Contour& root = this->Out.Stack.Contours[made.Contours[0]];
     SkinReport r;
     r.Component = root.Component;
     r.Side = root.hole() ? Shell::Inner : Shell::Outer;
-    r.Contours = static_cast<Index>(contours.size());
-    r.Closed = closed;
+    r.Contours = static_cast<Index>(made.Contours.size());
+    r.Closed = made.Closed;
     r.SinglePatch = false;
     r.Tolerance = fit.Tolerance;
-    r.Rms = complex.Rms;
-    r.Max = complex.Max;
-    r.Reached = complex.Rms <= fit.Tolerance;
-    r.AverageError = complex.Rms * complex.Rms; // eq. 13 over all points of the data sets
-    for (const PatchReport& p : complex.Patches)
+    r.Rms = made.Input.TotalRMS;
+    r.Max = made.Input.TotalMax;
+    r.Reached = r.Rms <= fit.Tolerance;
+    r.AverageError = r.Rms * r.Rms; // eq. 13 over the contours' points
+    for (const Index c : made.Contours)
     {
-      r.TotalError += p.Rms * p.Rms * static_cast<double>(p.Points);
+      r.TotalError +=
+        r.AverageError * static_cast<double>(this->Out.Stack.Contours[c].Points.size());
     }
-    r.AverageErrorPerControlPoint =
-      r.TotalError / static_cast<double>(complex.Model.ControlPoints.size());
+    r.AverageErrorPerControlPoint = r.TotalError / static_cast<double>(model.ControlPoints.size());
     r.PointSpacing = fit.PointSpacing;
-    r.NormalJump = complex.MaxNormalJump;
-    r.FoldedPatches = complex.FoldedPatches;
-    if (root.hole())
-    {
-      transposePatches(complex.Model);
-    }
-    // the border lies in its plane: no cut
-    const std::vector<Index> cut(contours.begin() + (closed ? 0 : 1), contours.end());
-    this->measureModel(complex.Model, cut, made.Ends, r.Measures);
-    for (SplinePatch& p : complex.Model.Patches)
-    {
-      p.Side = r.Side;
-    }
-    this->append(complex.Model, contours[0], r);
+    r.NormalJump = made.MaxNormalJump;
+    r.FoldedPatches = made.Surface.FoldedPatches;
+    this->measureModel(model, made.Contours, made.Ends, r.Measures);
+    this->append(model, made.Contours, r);
   }
 
   void measureModel(const SplineModel& model, const std::vector<Index>& contours,
@@ -309,7 +339,7 @@ private:
     }
     if (const auto s = sampleModel(model, {}, quiet))
     {
-      measureEnds(this->Out.Stack, ends, s->Points, s->Normals, out);
+      measureEnds(this->Out.Stack, ends, *s, out);
     }
   }
 
@@ -375,10 +405,10 @@ private:
     {
       p.Side = r.Side;
     }
-    this->append(part, contours[0], r);
+    this->append(part, contours, r);
   }
 
-  void append(const SplineModel& part, Index contour, SkinReport& r)
+  void append(const SplineModel& part, const std::vector<Index>& contours, SkinReport& r)
   {
     r.FirstPatch = static_cast<Index>(this->Out.Model.Patches.size());
     r.Patches = static_cast<Index>(part.Patches.size());
@@ -386,18 +416,36 @@ private:
     if (r.FoldedPatches > 0)
     {
       this->Out.Notes.push_back(
-        {contour, "and its part: the surface folds in " + std::to_string(r.FoldedPatches) +
-                    " patch(es); raise Tolerance or Fairing"});
+        {contours[0], "and its part: the surface folds in " + std::to_string(r.FoldedPatches) +
+                        " patch(es); raise Tolerance or Fairing"});
     }
     if (!r.Reached && this->Options.Fit.CountU == 0)
     {
-      this->Out.Notes.push_back({contour,
-        std::string("and its part: the tolerance was not reached; ") +
-          (r.SinglePatch ? "raise ControlPointLimit or Tolerance"
-                         : "the contours change too much from slice to slice: give slices between, "
-                           "raise Tolerance, or use BranchedContourSurface")});
+      this->noteMiss(part, contours, r);
     }
     this->Out.Skins.push_back(r);
+  }
+
+  /// A missed tolerance, said of every contour that is further away than it.
+  void noteMiss(const SplineModel& part, const std::vector<Index>& contours, const SkinReport& r)
+  {
+    this->Out.Notes.push_back({contours[0],
+      std::string("and its part: the tolerance was not reached; ") +
+        (r.SinglePatch ? "raise ControlPointLimit or Tolerance"
+                       : "the contours change too much from slice to slice: give slices between, "
+                         "or raise Tolerance")});
+    Monitor quiet;
+    const auto input = inputError(part, this->Out.Stack, contours, quiet);
+    for (std::size_t k = 0; input && k < contours.size(); ++k)
+    {
+      if (input->ContourRMS[k] > r.Tolerance)
+      {
+        std::array<char, 32> text{};
+        std::snprintf(text.data(), text.size(), "%.3g", input->ContourRMS[k]);
+        this->Out.Notes.push_back({contours[k],
+          std::string("lies ") + text.data() + " (RMS) from the surface, above the tolerance"});
+      }
+    }
   }
 
   SplineModel blocks(const SkinSurface& surface, int& folded) const

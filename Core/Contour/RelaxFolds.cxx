@@ -27,6 +27,7 @@ constexpr int Rounds = 24;           ///< of turning samples over, at most
 constexpr int Patience = 8;          ///< rounds without one folded patch less
 constexpr double LongestStep = 0.25; ///< in sizes of a span
 constexpr double SharpTurn = 0.1;    ///< cosine between neighboring samples' normals
+constexpr double Misfit = 0.1;       ///< RMS distance that data may be left behind, in spans
 
 /// Values (or derivatives) of the control points at a place: a linear form in them.
 struct PointForm
@@ -77,6 +78,26 @@ public:
       }
     }
     this->Energy.setFromTriplets(entries.begin(), entries.end());
+  }
+
+  double spanSize() const { return this->SpanSize; }
+
+  /// RMS distance of the data from where they were nearest.
+  double misfit(const std::vector<ModelHit>& hits, const std::vector<Vec3>& points) const
+  {
+    double sum = 0.0;
+    double count = 0.0;
+    for (std::size_t i = 0; i < hits.size(); ++i)
+    {
+      if (std::binary_search(this->Region.begin(), this->Region.end(), hits[i].Patch))
+      {
+        const SplinePatch& s = this->Model.Patches[hits[i].Patch];
+        sum +=
+          (points[i] - evaluatePatch(this->Model, s, hits[i].U, hits[i].V).Point).squaredNorm();
+        count += 1.0;
+      }
+    }
+    return std::sqrt(sum / std::max(count, 1.0));
   }
 
   /// The least energy.
@@ -452,7 +473,8 @@ int foldedIn(
   return folded;
 }
 
-/// Moves a region until no patch of it is folded; the model is changed where fewer are.
+/// Moves a region until no patch of it is folded; the model is changed where fewer are, and its
+/// data are not left behind.
 void unfold(SplineModel& model, std::vector<double>& jacobians,
   const std::vector<std::int64_t>& region, const std::vector<ModelHit>& hits,
   const std::vector<Vec3>& points, const Pass& pass)
@@ -464,6 +486,7 @@ void unfold(SplineModel& model, std::vector<double>& jacobians,
   }
   int least = foldedIn(model, region, jacobians);
   relaxer.assemble(hits, points, DataWeight * pass.Data);
+  const double allowed = relaxer.misfit(hits, points) + Misfit * relaxer.spanSize();
   if (pass.Smooth)
   {
     relaxer.solve();
@@ -475,7 +498,7 @@ void unfold(SplineModel& model, std::vector<double>& jacobians,
   for (int round = 0; round <= Rounds; ++round)
   {
     const int left = foldedIn(relaxer.result(), region, now);
-    if (left < least)
+    if (left < least && relaxer.misfit(hits, points) <= allowed)
     {
       least = left;
       model = relaxer.result();
@@ -525,7 +548,7 @@ Result<int> relaxFolds(
       });
   }
   const Pass passes[] = {{1, 1.0, true}, {1, 0.1, true}, {1, 1.0, false}, {2, 1.0, true},
-    {2, 0.1, true}, {2, 0.1, false}, {3, 0.1, true}};
+    {2, 0.1, true}, {2, 0.1, false}, {3, 0.1, true}, {5, 0.1, true}, {8, 0.1, true}};
   double done = 0.0;
   for (const Pass& pass : passes)
   {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace bsr
 {
@@ -36,45 +37,44 @@ void judgeEnd(const std::vector<Vec3>& points, const std::vector<Vec3>& normals,
 }
 } // namespace
 
-std::vector<LegEnd> legEnds(const SkinGrid& grid)
-{
-  std::vector<LegEnd> ends;
-  for (std::size_t r = 0; r < grid.Rings.size(); ++r)
-  {
-    if (grid.Rings[r].Core)
-    {
-      ends.push_back({grid.Rings[r].Contour, grid.CapDirection[r], grid.CapRoom[r]});
-    }
-  }
-  return ends;
-}
-
 void measureEnds(const ContourStack& stack, const std::vector<LegEnd>& ends,
-  const std::vector<Vec3>& points, const std::vector<Vec3>& normals, SkinMeasures& out)
+  const SampledModel& samples, SkinMeasures& out)
 {
   for (const LegEnd& e : ends)
   {
-    const Contour& c = stack.Contours[e.Contour];
-    const Slice& s = stack.Slices[c.Slice];
-    const double beside = c.Length / static_cast<double>(c.Points.size());
-    std::vector<Vec3> own;
-    std::vector<Vec3> turned;
-    double top = 0.0;
-    for (std::size_t i = 0; i < points.size(); ++i)
+    const Slice& s = stack.Slices[stack.Contours[e.Contour].Slice];
+    // a slice's own plane may be tilted a little against its normal here
+    double level = -std::numeric_limits<double>::infinity();
+    for (const Vec3& p : stack.Contours[e.Contour].Points)
     {
-      const double height = e.Out.dot(points[i] - s.Origin);
-      const Vec2 flat = stack.flat(points[i]);
-      const bool over = height > 0.0 && height < 2.0 * e.Room && insideCurve(c.Flat, flat);
-      const auto near = [&](const Vec2& q) { return (q - flat).norm() < beside; };
-      if (over || (height > 0.0 && height < 0.25 * e.Room &&
-                    std::any_of(c.Flat.begin(), c.Flat.end(), near)))
+      level = std::max(level, e.Out.dot(p - s.Origin));
+    }
+    std::vector<Index> own;
+    for (std::size_t q = 0; q < samples.Polygons.size(); ++q)
+    {
+      if (std::binary_search(e.Patches.begin(), e.Patches.end(), samples.PatchId[q]))
       {
-        own.push_back(points[i]);
-        turned.push_back(normals[i] * (normals[i].dot(e.Out) < 0.0 ? -1.0 : 1.0));
+        const auto& corners = samples.Polygons[q];
+        own.insert(own.end(), corners.begin(), corners.begin() + (corners[3] < 0 ? 3 : 4));
+      }
+    }
+    std::sort(own.begin(), own.end());
+    own.erase(std::unique(own.begin(), own.end()), own.end());
+    std::vector<Vec3> points;
+    std::vector<Vec3> normals;
+    double top = 0.0;
+    for (const Index i : own)
+    {
+      const double height = e.Out.dot(samples.Points[i] - s.Origin) - level;
+      if (height > 0.0)
+      {
+        const Vec3& n = samples.Normals[i];
+        points.push_back(samples.Points[i]);
+        normals.push_back(n.dot(e.Out) < 0.0 ? Vec3(-n) : n);
         top = std::max(top, height);
       }
     }
-    judgeEnd(own, turned, top, e.Room, out);
+    judgeEnd(points, normals, top, e.Room, out);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include "Contour/SkinFit.h"
 #include "Contour/SurfaceReport.h"
+#include "Spline/SampleModel.h"
 
 namespace bsr
 {
@@ -18,19 +19,20 @@ struct SkinMeasures
   int SignChangesModel = 0; ///< along the surface at the same samples
 };
 
-/// Where a leg ends: its last contour, the direction out of it, the distance to the next slice.
+/// Where a leg ends: its last contour, the direction out of it, the distance to the next slice, and
+/// the patches there.
 struct LegEnd
 {
   Index Contour = -1;
   Vec3 Out = Vec3::Zero();
   double Room = 0.0;
+  std::vector<Index> Patches; ///< sorted
 };
-std::vector<LegEnd> legEnds(const SkinGrid& grid);
 
-/// EndHeight and ConvexShare of a sampled surface: of its points beyond a leg's last slice, over or
-/// beside that contour.
+/// EndHeight and ConvexShare of a sampled surface: of the points of the ends' patches beyond their
+/// legs' last slices.
 void measureEnds(const ContourStack& stack, const std::vector<LegEnd>& ends,
-  const std::vector<Vec3>& points, const std::vector<Vec3>& normals, SkinMeasures& out);
+  const SampledModel& samples, SkinMeasures& out);
 
 /// Measures a fitted skin against its contours.
 SkinMeasures measureSkin(

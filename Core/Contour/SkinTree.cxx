@@ -7,25 +7,6 @@ namespace bsr
 {
 namespace
 {
-/// The part of a tree from `node` on.
-SkinTree subtree(const SkinTree& tree, Index node)
-{
-  SkinTree sub;
-  sub.Up = tree.Up;
-  std::vector<Index> source{node};
-  sub.Nodes.push_back({tree.Nodes[node].Contour, {}});
-  for (std::size_t n = 0; n < source.size(); ++n)
-  {
-    for (const Index child : tree.Nodes[source[n]].Children)
-    {
-      sub.Nodes[n].Children.push_back(static_cast<Index>(sub.Nodes.size()));
-      sub.Nodes.push_back({tree.Nodes[child].Contour, {}});
-      source.push_back(child);
-    }
-  }
-  return sub;
-}
-
 /// Cuts the graph piece by piece; contours of finished pieces are taken.
 class Cutter
 {
@@ -157,102 +138,11 @@ private:
   {
     SkinPiece piece;
     const bool isRoot = down.Nodes.size() == 1 || up.Nodes.size() == 1;
-    const SkinTree& legs = up.Nodes.size() == 1 ? down : up;
-    if (isRoot && !this->endsClosed(legs.Nodes[0].Contour, legs.Nodes[1].Contour))
-    {
-      piece.Legs = legs;
-      return piece;
-    }
-    piece.Closed = true;
-    if (isRoot)
-    {
-      this->closeBase(legs, piece);
-    }
-    else
-    {
-      this->closeBoth(down, up, piece);
-    }
+    piece.Legs = up.Nodes.size() == 1 ? down : up;
+    piece.Other = up.Nodes.size() == 1 ? up : down;
+    piece.Closed =
+      !isRoot || this->endsClosed(piece.Legs.Nodes[0].Contour, piece.Legs.Nodes[1].Contour);
     return piece;
-  }
-
-  static SkinTree lineOf(const std::vector<Index>& contours, bool up)
-  {
-    SkinTree tree;
-    tree.Up = up;
-    for (std::size_t i = 0; i < contours.size(); ++i)
-    {
-      tree.Nodes.push_back({contours[i], {}});
-      if (i + 1 < contours.size())
-      {
-        tree.Nodes.back().Children.push_back(static_cast<Index>(i) + 1);
-      }
-    }
-    return tree;
-  }
-
-  /// How many contours of a line from its end on the cap takes: those closer to the end than half
-  /// a diameter, but not all.
-  std::size_t capLength(const std::vector<Index>& line) const
-  {
-    const Contour& end = this->contour(line.back());
-    std::size_t n = 1;
-    while (n + 2 < line.size() &&
-           std::abs(this->Stack.Slices[this->contour(line[line.size() - 1 - n]).Slice].Position -
-                    this->Stack.Slices[end.Slice].Position) <
-             0.4 * this->contour(line[line.size() - 1 - n]).diameter())
-    {
-      ++n;
-    }
-    return n;
-  }
-
-  /// A tree whose root end is to be closed: its first chain becomes cap and trunk.
-  void closeBase(const SkinTree& legs, SkinPiece& piece) const
-  {
-    const std::vector<Index> nodes = legs.chain(0);
-    std::vector<Index> line; // contours from the split (or the far end) to the root
-    for (const Index n : nodes)
-    {
-      line.push_back(legs.Nodes[n].Contour);
-    }
-    std::reverse(line.begin(), line.end());
-    const bool tube = !legs.splits();
-    std::vector<Index> reversed(line.rbegin(), line.rend());
-    const std::size_t near = tube ? std::min(this->capLength(reversed), line.size() / 3) : 0;
-    const std::size_t far = std::min(this->capLength(line), (line.size() - near - 1) / 2);
-    // trunk: line[near .. size - 1 - far]
-    const std::size_t last = line.size() - 1 - far;
-    piece.Trunk.assign(line.begin() + static_cast<std::ptrdiff_t>(near),
-      line.begin() + static_cast<std::ptrdiff_t>(last) + 1);
-    const SkinTree inner =
-      tube ? lineOf(std::vector<Index>(
-                      reversed.end() - 1 - static_cast<std::ptrdiff_t>(near), reversed.end()),
-               legs.Up)
-           : subtree(legs, nodes.back());
-    const SkinTree outer = lineOf(
-      std::vector<Index>(line.begin() + static_cast<std::ptrdiff_t>(last), line.end()), !legs.Up);
-    piece.Lower = legs.Up ? outer : inner;
-    piece.Upper = legs.Up ? inner : outer;
-    if (legs.Up)
-    {
-      std::reverse(piece.Trunk.begin(), piece.Trunk.end());
-    }
-  }
-
-  void closeBoth(const SkinTree& down, const SkinTree& up, SkinPiece& piece) const
-  {
-    const std::vector<Index> low = down.chain(0);
-    const std::vector<Index> high = up.chain(0);
-    for (auto n = low.rbegin(); n != low.rend(); ++n)
-    {
-      piece.Trunk.push_back(down.Nodes[*n].Contour);
-    }
-    for (std::size_t n = 1; n < high.size(); ++n)
-    {
-      piece.Trunk.push_back(up.Nodes[high[n]].Contour);
-    }
-    piece.Lower = subtree(down, low.back());
-    piece.Upper = subtree(up, high.back());
   }
 
   void noteCuts()
@@ -289,30 +179,18 @@ std::vector<Index> SkinTree::chain(Index node) const
   return nodes;
 }
 
-bool SkinTree::splits() const
+std::vector<Index> SkinPiece::contours() const
 {
-  return std::any_of(this->Nodes.begin(), this->Nodes.end(),
-    [](const SkinNode& n) { return n.Children.size() > 1; });
-}
-
-SkinPiece asTrunk(const SkinPiece& open)
-{
-  SkinPiece piece;
-  std::vector<Index> nodes = open.Legs.chain(0);
-  // without a split the last third of the line closes the end
-  const std::size_t keep =
-    open.Legs.splits() ? nodes.size() : std::max<std::size_t>(2, 2 * nodes.size() / 3);
-  nodes.resize(std::min(keep, nodes.size()));
-  for (const Index n : nodes)
+  std::vector<Index> all;
+  for (const SkinNode& n : this->Legs.Nodes)
   {
-    piece.Trunk.push_back(open.Legs.Nodes[n].Contour);
+    all.push_back(n.Contour);
   }
-  (open.Legs.Up ? piece.Upper : piece.Lower) = subtree(open.Legs, nodes.back());
-  if (!open.Legs.Up)
+  for (std::size_t n = 1; n < this->Other.Nodes.size(); ++n)
   {
-    std::reverse(piece.Trunk.begin(), piece.Trunk.end());
+    all.push_back(this->Other.Nodes[n].Contour);
   }
-  return piece;
+  return all;
 }
 
 std::vector<SkinPiece> cutPieces(

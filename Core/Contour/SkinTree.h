@@ -26,20 +26,20 @@ struct SkinTree
 
   /// Nodes from `node` on that have one child each, up to and with a leaf or a split.
   std::vector<Index> chain(Index node) const;
-  bool splits() const;
 };
 
 /**
- * A part of the stack that one skin covers. An open one has its root contour as border and its
- * tree in Legs; a closed one has a trunk, at least one contour, with a tree at both of its ends
- * whose roots are the trunk's first and last contour.
+ * A part of the stack without loops and turns. An open one has its root contour as border and its
+ * tree in Legs; a closed one has a tree to both sides of its root, one of which may be the root
+ * alone.
  */
 struct SkinPiece
 {
   bool Closed = false;
-  SkinTree Legs;            ///< of an open piece
-  std::vector<Index> Trunk; ///< of a closed piece, from low to high
-  SkinTree Lower, Upper;    ///< of a closed piece
+  SkinTree Legs;  ///< of an open piece
+  SkinTree Other; ///< of a closed piece: beyond the root of Legs
+
+  std::vector<Index> contours() const;
 };
 
 enum class SkinBase
@@ -48,9 +48,6 @@ enum class SkinBase
   Open,
   Closed
 };
-
-/// The same part as trunk and tree, for a complex of patches: open where the tree is empty.
-SkinPiece asTrunk(const SkinPiece& open);
 
 /**
  * Cuts the graph of closed contours into pieces with legs on one side (paper 004's trousers, any

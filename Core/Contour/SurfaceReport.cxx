@@ -290,6 +290,18 @@ Result<InputError> inputError(const SplineModel& model, const ContourStack& stac
   {
     e.RMS[p] = e.Points[p] > 0 ? std::sqrt(e.RMS[p] / static_cast<double>(e.Points[p])) : 0.0;
   }
+  std::size_t at = 0;
+  for (const Index c : contours)
+  {
+    const std::size_t n = stack.Contours[c].Points.size();
+    double sum = 0.0;
+    for (std::size_t i = at; i < at + n; ++i)
+    {
+      sum += deviation->Distance[i] * deviation->Distance[i];
+    }
+    e.ContourRMS.push_back(std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, n))));
+    at += n;
+  }
   e.TotalRMS = deviation->RMS;
   e.TotalMax = deviation->Max;
   return e;

@@ -32,6 +32,7 @@ struct InputError
   std::vector<std::int64_t> Points; ///< of each patch: those nearest to it
   std::vector<double> RMS;
   std::vector<double> Max;
+  std::vector<double> ContourRMS; ///< of each of the contours given
   double TotalRMS = 0.0;
   double TotalMax = 0.0;
 };
