@@ -71,16 +71,17 @@ public:
     std::vector<BranchedSurface> tried;
     for (const Trial& trial : Trials)
     {
-      if (monitor.cancelled())
-      {
-        return Status::cancelled();
-      }
       RowOptions rows = this->Rows;
       rows.StarSize = trial.StarSize;
       rows.BendSpans = trial.BendSpans;
       rows.Follow = trial.Follow;
       this->propose(rows, tried.empty());
-      tried.push_back(this->build());
+      auto next = this->build(monitor);
+      if (!next)
+      {
+        return next;
+      }
+      tried.push_back(std::move(*next));
       this->judge(tried.back(), rows, tried.size() == 1);
       if (tried.back().FoldedPatches == 0)
       {
@@ -89,7 +90,12 @@ public:
       monitor.progress(0.05 * static_cast<double>(tried.size()));
     }
     this->propose(this->Rows, false, false); // the best of each
-    tried.push_back(this->build());
+    auto last = this->build(monitor);
+    if (!last)
+    {
+      return last;
+    }
+    tried.push_back(std::move(*last));
     std::stable_sort(tried.begin(), tried.end(),
       [](const auto& a, const auto& b) { return a.FoldedPatches < b.FoldedPatches; });
     tried.resize(
@@ -172,22 +178,40 @@ private:
     }
   }
 
-  BranchedSurface build() const
+  Result<BranchedSurface> build(Monitor& monitor) const
   {
     const InsertedRows inserted =
       insertRows(this->Stack, this->Net, this->Sections, this->Choices, this->Options.CapHeight);
     std::vector<TubeSurface> tubes(this->Net.Tubes.size());
-    parallelFor(0, static_cast<std::int64_t>(tubes.size()), 1,
-      [&](std::int64_t begin, std::int64_t end)
-      {
-        for (std::int64_t t = begin; t < end; ++t)
+    const bool made =
+      parallelForUntilCancelled(0, static_cast<std::int64_t>(tubes.size()), 1, monitor,
+        [&](std::int64_t begin, std::int64_t end)
         {
-          tubes[t] = makeTube(this->Net, static_cast<Index>(t), this->Sections[t], inserted,
-            this->Options, this->Rows, this->Fine[t] != 0);
-        }
-      });
+          for (std::int64_t t = begin; t < end; ++t)
+          {
+            tubes[t] = makeTube(this->Net, static_cast<Index>(t), this->Sections[t], inserted,
+              this->Options, this->Rows, this->Fine[t] != 0);
+          }
+        });
+    if (!made)
+    {
+      return Status::cancelled();
+    }
     BranchedSurface s = assemblePatches(this->Stack, this->Net, tubes, inserted, this->Options);
-    s.Jacobians = patchJacobians(s.Model);
+    s.Jacobians.assign(s.Model.Patches.size(), 0.0);
+    const bool measured =
+      parallelForUntilCancelled(0, static_cast<std::int64_t>(s.Jacobians.size()), 32, monitor,
+        [&](std::int64_t begin, std::int64_t end)
+        {
+          for (std::int64_t p = begin; p < end; ++p)
+          {
+            s.Jacobians[p] = patchJacobian(s.Model, p);
+          }
+        });
+    if (!measured)
+    {
+      return Status::cancelled();
+    }
     s.FoldedPatches = static_cast<int>(
       std::count_if(s.Jacobians.begin(), s.Jacobians.end(), [](double j) { return j < 0.0; }));
     return s;

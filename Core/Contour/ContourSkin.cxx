@@ -12,6 +12,8 @@ namespace bsr
 {
 namespace
 {
+constexpr double Hopeless = 4.0; ///< tolerances, at which a network is made instead of one patch
+
 Status checkOptions(const ContourSkinOptions& o)
 {
   const SkinFitOptions& f = o.Fit;
@@ -98,6 +100,10 @@ public:
       {
         return s;
       }
+    }
+    if (this->Mon.cancelled()) // while measuring
+    {
+      return Status::cancelled();
     }
     return this->Out.Skins.empty() ? this->nothing() : Status::ok();
   }
@@ -203,8 +209,12 @@ private:
     {
       contours.push_back(n.Contour);
     }
-    const SkinFitOptions fit = this->fitOptions(contours);
+    SkinFitOptions fit = this->fitOptions(contours);
     const bool relaxed = fit.Parameters == SkinParameters::Relaxed;
+    // a limit below the default is meant: a tolerance missed under it is told, not cured
+    const bool free = fit.ControlPointLimit >= SkinFitOptions().ControlPointLimit;
+    const bool other = otherwise && relaxed && free && fit.CountU == 0;
+    fit.Hopeless = other ? Hopeless : 0.0;
     SkinGrid grid = arrangeGrid(stack, piece.Legs, this->Options.CorePoints, relaxed);
     alignGrid(stack, grid);
     std::vector<CapPoint> caps = closeCores(stack, grid, this->Options.ConvexEnds ? 0.75 : 0.0);
@@ -220,10 +230,7 @@ private:
     }
     int folded = 0;
     this->blocks(*surface, folded);
-    // a limit below the default is meant: a tolerance missed under it is told, not cured
-    const bool free = fit.ControlPointLimit >= SkinFitOptions().ControlPointLimit;
-    const bool bad = folded > 0 || (!surface->Reached && free);
-    if (relaxed && bad && fit.CountU == 0 && otherwise)
+    if (folded > 0 ? relaxed && otherwise && fit.CountU == 0 : other && !surface->Reached)
     {
       SubMonitor rest(monitor, 0.6, 1.0);
       return this->skinNetwork({piece}, rest);
@@ -332,7 +339,7 @@ private:
   void measureModel(const SplineModel& model, const std::vector<Index>& contours,
     const std::vector<LegEnd>& ends, SkinMeasures& out)
   {
-    Monitor quiet;
+    QuietMonitor quiet(this->Mon);
     if (const auto r = resliceError(model, this->Out.Stack, contours, quiet))
     {
       out.Reslice = *r;
@@ -434,7 +441,7 @@ private:
         (r.SinglePatch ? "raise ControlPointLimit or Tolerance"
                        : "the contours change too much from slice to slice: give slices between, "
                          "or raise Tolerance")});
-    Monitor quiet;
+    QuietMonitor quiet(this->Mon);
     const auto input = inputError(part, this->Out.Stack, contours, quiet);
     for (std::size_t k = 0; input && k < contours.size(); ++k)
     {
@@ -500,6 +507,7 @@ Result<ContourSkinResult> skinContours(
   {
     return s;
   }
+  monitor.progress(1.0);
   return result;
 }
 } // namespace bsr

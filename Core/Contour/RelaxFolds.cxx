@@ -1,6 +1,7 @@
 #include "Contour/RelaxFolds.h"
 
 #include "Common/Parallel.h"
+#include "Contour/NormalMatrix.h"
 #include "Contour/RelaxSpace.h"
 #include "Contour/SurfaceReport.h"
 #include "Spline/Basis.h"
@@ -22,12 +23,13 @@ constexpr int Samples = 25;     ///< a side, as in patchJacobians
 constexpr int Window = 4;       ///< samples on each side that a reference normal is the mean of
 constexpr double Turned = 0.12; ///< least wanted area of a sample, of the patch's mean
 constexpr double Acceptable = 0.06;
-constexpr double DataWeight = 300.0; ///< of the contours' points against the bending energy
-constexpr int Rounds = 24;           ///< of turning samples over, at most
-constexpr int Patience = 8;          ///< rounds without one folded patch less
-constexpr double LongestStep = 0.25; ///< in sizes of a span
-constexpr double SharpTurn = 0.1;    ///< cosine between neighboring samples' normals
-constexpr double Misfit = 0.1;       ///< RMS distance that data may be left behind, in spans
+constexpr double DataWeight = 300.0;    ///< of the contours' points against the bending energy
+constexpr int Rounds = 24;              ///< of turning samples over, at most
+constexpr int Patience = 8;             ///< rounds without one folded patch less
+constexpr double LongestStep = 0.25;    ///< in sizes of a span
+constexpr double SharpTurn = 0.1;       ///< cosine between neighboring samples' normals
+constexpr std::size_t LargeModel = 600; ///< patches, small enough for regions of many rings
+constexpr double Misfit = 0.1;          ///< RMS distance that data may be left behind, in spans
 
 /// Values (or derivatives) of the control points at a place: a linear form in them.
 struct PointForm
@@ -118,12 +120,12 @@ public:
   /// One step that turns samples over whose normal points backward. False: there is none.
   bool turn(double weight)
   {
-    std::vector<Eigen::Triplet<double>> entries;
+    NormalMatrix a(3 * this->N);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(3 * this->N);
     bool any = false;
     for (const std::int64_t p : this->Region)
     {
-      any = this->addTurned(p, weight, entries, right) || any;
+      any = this->addTurned(p, weight, a, right) || any;
     }
     if (!any)
     {
@@ -135,27 +137,19 @@ public:
       {
         for (int c = 0; c < 3; ++c)
         {
-          entries.emplace_back(3 * static_cast<int>(e.row()) + c, 3 * k + c, e.value());
+          a.add(3 * static_cast<int>(e.row()) + c, 3 * k + c, e.value());
         }
       }
     }
-    Eigen::SparseMatrix<double> a(3 * this->N, 3 * this->N);
-    a.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::MatrixXd g = this->Gradient;
     for (int i = 0; i < this->N; ++i)
     {
-      for (int c = 0; c < 3; ++c)
-      {
-        right[3 * i + c] -= g(i, c);
-        a.coeffRef(3 * i + c, 3 * i + c) += 1e-9 * a.coeff(3 * i + c, 3 * i + c) + 1e-12;
-      }
+      right.segment<3>(3 * i) -= this->Gradient.row(i).transpose();
     }
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(a);
-    if (solver.info() != Eigen::Success)
+    Eigen::VectorXd x;
+    if (!a.solve(right, x))
     {
       return false;
     }
-    const Eigen::VectorXd x = solver.solve(right);
     Eigen::MatrixXd step(this->N, 3);
     for (int i = 0; i < this->N; ++i)
     {
@@ -318,8 +312,7 @@ private:
   }
 
   /// Samples of a patch with too small an area seen along the mean normal about them.
-  bool addTurned(std::int64_t p, double weight, std::vector<Eigen::Triplet<double>>& entries,
-    Eigen::VectorXd& right)
+  bool addTurned(std::int64_t p, double weight, NormalMatrix& entries, Eigen::VectorXd& right)
   {
     const SplinePatch& s = this->Model.Patches[p];
     const auto d = patchDomain(this->Model, s);
@@ -378,8 +371,7 @@ private:
   }
 
   void addArea(const LinearForm& du, const LinearForm& dv, const Vec3& a, const Vec3& b,
-    double missing, double weight, std::vector<Eigen::Triplet<double>>& entries,
-    Eigen::VectorXd& right) const
+    double missing, double weight, NormalMatrix& entries, Eigen::VectorXd& right) const
   {
     std::map<int, Vec3> row;
     for (const LinearForm::Term& t : du.terms())
@@ -397,7 +389,7 @@ private:
       {
         for (int c = 0; c < 9; ++c)
         {
-          entries.emplace_back(3 * i + c / 3, 3 * j + c % 3, weight * x[c / 3] * y[c % 3]);
+          entries.add(3 * i + c / 3, 3 * j + c % 3, weight * x[c / 3] * y[c % 3]);
         }
       }
     }
@@ -477,7 +469,7 @@ int foldedIn(
 /// data are not left behind.
 void unfold(SplineModel& model, std::vector<double>& jacobians,
   const std::vector<std::int64_t>& region, const std::vector<ModelHit>& hits,
-  const std::vector<Vec3>& points, const Pass& pass)
+  const std::vector<Vec3>& points, const Pass& pass, Monitor& monitor)
 {
   Relaxer relaxer(model, region);
   if (relaxer.empty())
@@ -506,7 +498,7 @@ void unfold(SplineModel& model, std::vector<double>& jacobians,
     }
     stuck = left < fewest ? 0 : stuck + 1;
     fewest = std::min(fewest, left);
-    if (left == 0 || stuck > Patience || !relaxer.turn(weight))
+    if (left == 0 || stuck > Patience || monitor.cancelled() || !relaxer.turn(weight))
     {
       break;
     }
@@ -538,20 +530,29 @@ Result<int> relaxFolds(
   std::vector<ModelHit> hits(points.size());
   {
     const ClosestPoint closest(model);
-    parallelFor(0, static_cast<std::int64_t>(points.size()), 64,
-      [&](std::int64_t begin, std::int64_t end)
-      {
-        for (std::int64_t i = begin; i < end; ++i)
+    const bool found =
+      parallelForUntilCancelled(0, static_cast<std::int64_t>(points.size()), 256, monitor,
+        [&](std::int64_t begin, std::int64_t end)
         {
-          hits[i] = closest.find(points[i]);
-        }
-      });
+          for (std::int64_t i = begin; i < end; ++i)
+          {
+            hits[i] = closest.find(points[i]);
+          }
+        });
+    if (!found)
+    {
+      return Status::cancelled();
+    }
   }
   const Pass passes[] = {{1, 1.0, true}, {1, 0.1, true}, {1, 1.0, false}, {2, 1.0, true},
     {2, 0.1, true}, {2, 0.1, false}, {3, 0.1, true}, {5, 0.1, true}, {8, 0.1, true}};
   double done = 0.0;
   for (const Pass& pass : passes)
   {
+    if (pass.Rings > 3 && model.Patches.size() < LargeModel)
+    {
+      break;
+    }
     for (const std::int64_t p : folded)
     {
       if (monitor.cancelled())
@@ -560,7 +561,7 @@ Result<int> relaxFolds(
       }
       if (jacobians[p] < 0.0) // not yet cured with another one
       {
-        unfold(model, jacobians, growRegion(model, {p}, pass.Rings), hits, points, pass);
+        unfold(model, jacobians, growRegion(model, {p}, pass.Rings), hits, points, pass, monitor);
       }
     }
     monitor.progress(done += 1.0 / static_cast<double>(std::size(passes)));

@@ -25,6 +25,12 @@ struct Attempt
   double Fairing; ///< times the given one
 };
 
+/// Whether a surface is so far from the tolerance that it is given up for something else.
+bool hopeless(const SkinSurface& s, const SkinFitOptions& options)
+{
+  return options.Hopeless > 0.0 && s.Rms > options.Hopeless * options.Tolerance;
+}
+
 class Fitter
 {
 public:
@@ -49,9 +55,14 @@ public:
         return s;
       }
       this->openCorners();
-      this->measure();
+      if (!this->measure())
+      {
+        return Status::cancelled();
+      }
       this->Mon.progress(1.0 - 1.0 / (1.5 + round));
-      if (this->Out.Reached || given || !this->refine())
+      const bool fine = 4 * this->Out.Shape.controlPoints() > this->Options.ControlPointLimit;
+      if (this->Out.Reached || given || (fine && hopeless(this->Out, this->Options)) ||
+          !this->refine())
       {
         return std::move(this->Out);
       }
@@ -253,7 +264,10 @@ private:
       {
         return Status::cancelled();
       }
-      this->project(pass + 1 < passes ? 2 : 8);
+      if (!this->project(pass + 1 < passes ? 2 : 8))
+      {
+        return Status::cancelled();
+      }
     }
     return Status::ok();
   }
@@ -304,13 +318,13 @@ private:
     }
   }
 
-  /// Moves each sample's parameters towards its nearest point.
-  void project(int steps)
+  /// Moves each sample's parameters towards its nearest point. False: cancelled.
+  bool project(int steps)
   {
     const SplineModel model = modelOf(this->Out.Shape, this->Out.Control);
     const SplinePatch& patch = model.Patches[0];
     auto& samples = this->Out.Samples;
-    parallelFor(0, static_cast<std::int64_t>(samples.size()), 64,
+    return parallelForUntilCancelled(0, static_cast<std::int64_t>(samples.size()), 512, this->Mon,
       [&](std::int64_t begin, std::int64_t end)
       {
         for (std::int64_t k = begin; k < end; ++k)
@@ -361,47 +375,50 @@ private:
     return false;
   }
 
-  void measure()
+  /// Errors of the data set, and distances of the samples from the surface. False: cancelled.
+  bool measure()
   {
     SkinSurface& o = this->Out;
     const SplineModel model = modelOf(o.Shape, o.Control);
+    const SplinePatch& patch = model.Patches[0];
+    const auto squared = [&](const SkinSample& s, const Vec2& uv)
+    { return (evaluatePatch(model, patch, uv.x(), uv.y()).Point - s.Sample.Point).squaredNorm(); };
+    const std::size_t n = o.Samples.size();
+    this->Errors.assign(n, 0.0);
+    std::vector<double> nearest(n, 0.0);
+    const bool done = parallelForUntilCancelled(0, static_cast<std::int64_t>(n), 256, this->Mon,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        for (std::int64_t k = begin; k < end; ++k)
+        {
+          const SkinSample& s = o.Samples[k];
+          this->Errors[k] = squared(s, s.Sample.UV);
+          SkinSample close = s;
+          for (int i = 0; i < 8 && !s.Cap && this->step(model, patch, close); ++i)
+          {
+          }
+          nearest[k] = squared(s, close.Sample.UV);
+        }
+      });
     o.TotalError = 0.0;
-    double nearest = 0.0;
     o.Max = 0.0;
+    double sum = 0.0;
     std::int64_t nodes = 0;
     std::int64_t count = 0;
-    this->Errors.clear();
-    for (const SkinSample& s : o.Samples)
+    for (std::size_t k = 0; k < n; ++k)
     {
-      const Vec2 uv = s.Sample.UV;
-      const double d =
-        (evaluatePatch(model, model.Patches[0], uv.x(), uv.y()).Point - s.Sample.Point)
-          .squaredNorm();
-      this->Errors.push_back(d);
-      if (s.Node)
-      {
-        o.TotalError += d;
-        ++nodes;
-      }
-      if (!s.Cap)
-      {
-        SkinSample close = s;
-        for (int k = 0; k < 8 && this->step(model, model.Patches[0], close); ++k)
-        {
-        }
-        const double n =
-          (evaluatePatch(model, model.Patches[0], close.Sample.UV.x(), close.Sample.UV.y()).Point -
-            s.Sample.Point)
-            .squaredNorm();
-        nearest += n;
-        o.Max = std::max(o.Max, std::sqrt(n));
-        ++count;
-      }
+      const SkinSample& s = o.Samples[k];
+      o.TotalError += s.Node ? this->Errors[k] : 0.0;
+      nodes += s.Node ? 1 : 0;
+      sum += s.Cap ? 0.0 : nearest[k];
+      o.Max = s.Cap ? o.Max : std::max(o.Max, std::sqrt(nearest[k]));
+      count += s.Cap ? 0 : 1;
     }
     o.AverageError = o.TotalError / static_cast<double>(nodes);
-    o.Rms = std::sqrt(nearest / static_cast<double>(count));
+    o.Rms = std::sqrt(sum / static_cast<double>(count));
     const double tolerance = this->Options.Tolerance;
     o.Reached = o.AverageError <= tolerance && o.Rms <= tolerance;
+    return done;
   }
 
   /// New knots in the middle of the spans whose mean error is too large (section 2.5); false where
@@ -552,7 +569,7 @@ Result<SkinSurface> fitSkin(const SkinGrid& grid, const std::vector<CapPoint>& c
     {
       best = std::move(next);
     }
-    if (best->Folds == 0 && best->Reached)
+    if ((best->Folds == 0 && best->Reached) || hopeless(*best, options))
     {
       break;
     }

@@ -24,7 +24,9 @@ struct SkinFitOptions
   int ControlPointLimit = 4000;
   int CountU = 0; ///< control points along u (columns), 0: by refinement
   int CountV = 0;
-  double Fairing = 1e-3;     ///< see TensorSolver::solve, after relaxation
+  double Fairing = 1e-3; ///< see TensorSolver::solve, after relaxation
+  /// RMS distance, in tolerances, at which a surface is not refined further; 0: never.
+  double Hopeless = 0.0;
   double PointSpacing = 0.0; ///< of samples along the contours; 0: the contours' own
 };
 

@@ -105,7 +105,7 @@ Result<SkinNetwork> fitNetwork(const ContourStack& stack, const std::vector<Skin
     {
       break;
     }
-    branched.SectionTolerance *= 0.5;
+    branched.SectionTolerance *= 0.6;
   }
   for (const SideJumps& j : normalJumps(best.Surface.Model))
   {

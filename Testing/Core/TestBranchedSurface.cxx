@@ -8,6 +8,7 @@
 #include "Spline/SampleModel.h"
 #include "Spline/Topology.h"
 #include "Spline/Volume.h"
+#include "WatchMonitor.h"
 
 #include <gtest/gtest.h>
 
@@ -444,4 +445,71 @@ TEST(BranchedSurface, RandomStacks)
     folded, count, t.Value[0], b.Value[0], t.Value[3], b.Value[3], t.Value[5], b.Value[5]);
   EXPECT_EQ(folded, 0);
   EXPECT_LT(t.Value[3], 0.5);
+}
+
+TEST(BranchedSurface, TellsProgressAndCanBeCancelledAnywhere)
+{
+  for (const int seed : {4, 7})
+  {
+    const auto lines = randomStack(seed).Lines;
+    expectWatchable(
+      [&](Monitor& monitor)
+      {
+        SubMonitor first(monitor, 0.0, 0.1);
+        SubMonitor second(monitor, 0.1, 0.8);
+        SubMonitor third(monitor, 0.8, 1.0);
+        const auto stack = buildStack(lines, {}, first);
+        if (!stack)
+        {
+          return stack.status();
+        }
+        const auto surface = makeBranchedSurface(*stack, {}, second);
+        return surface ? reportBranched(*surface, *stack, third).status() : surface.status();
+      });
+  }
+}
+
+/// A bay much longer than the contour below it opens in one slice distance: the columns go there.
+TEST(BranchedSurface, BaysGetTheirColumns)
+{
+  std::vector<Polyline> lines;
+  for (int s = 0; s < 10; ++s)
+  {
+    if (s < 5)
+    {
+      lines.push_back(ellipseAt(Vec3(0.0, 0.0, s), 10.0, 10.0, 300));
+      continue;
+    }
+    // an island beside the bay makes it a junction
+    lines.push_back(ellipseAt(Vec3(0.0, -8.5, s), 0.8, 0.8, 30));
+    Polyline l;
+    for (int i = 0; i <= 500; ++i)
+    {
+      const double t = Tau * (i % 500) / 500.0;
+      const double wide = std::pow(std::max(0.0, -std::sin(t)), 20.0); // 1 at the bottom
+      const double r = 10.0 - 9.0 * wide;
+      l.Points.emplace_back(r * std::cos(t), r * std::sin(t), s);
+    }
+    lines.push_back(std::move(l));
+  }
+  Monitor monitor;
+  const ContourStack stack = stackOf(lines);
+  const auto net = makeNetwork(stack, {}, monitor);
+  ASSERT_TRUE(net.isOk()) << net.status().message();
+  ASSERT_EQ(net->Junctions.size(), 1u);
+  int bays = 0;
+  for (const Tube& t : net->Tubes)
+  {
+    const std::vector<double>& shares = t.Shares.front();
+    double widest = 0.0;
+    for (std::size_t u = 0; u < shares.size(); ++u)
+    {
+      const double next = u + 1 < shares.size() ? shares[u + 1] : shares[0] + 1.0;
+      EXPECT_GT(next, shares[u]);
+      widest = std::max(widest, next - shares[u]);
+    }
+    bays += stack.Contours[t.Contours[0]].Length > 70.0 ? 1 : 0;
+    EXPECT_LT(widest * t.Columns, 2.5);
+  }
+  EXPECT_EQ(bays, 1);
 }

@@ -4,6 +4,7 @@
 #include "Spline/ModelCheck.h"
 #include "Spline/SampleModel.h"
 #include "Spline/SplitPatch.h"
+#include "WatchMonitor.h"
 
 #include <gtest/gtest.h>
 
@@ -204,16 +205,15 @@ TEST(ContourSkin, RandomStacksGiveASurfaceOrAReason)
   for (const int seed : {0, 5, 6, 7, 10, 12, 17})
   {
     const bsrtest::RandomStack random = bsrtest::randomStack(seed);
-    bsr::ContourSkinOptions options;
-    options.Fit.ControlPointLimit = 900;
-    const auto result = skin(random.Lines, options);
+    const auto result = skin(random.Lines);
     ASSERT_TRUE(result.isOk()) << random.Name << ": " << result.status().message();
     EXPECT_TRUE(bsr::checkModel(result->Model).isOk()) << random.Name;
     ASSERT_FALSE(result->Skins.empty());
     for (const bsr::SkinReport& r : result->Skins)
     {
-      EXPECT_TRUE((r.FoldedPatches == 0 && r.Reached) || !result->Notes.empty()) << random.Name;
-      EXPECT_LT(r.Rms, 0.06 * result->Stack.meanDiameter()) << random.Name;
+      EXPECT_EQ(r.FoldedPatches, 0) << random.Name;
+      EXPECT_TRUE(r.Reached) << random.Name;
+      EXPECT_LT(r.Measures.Reslice.There.Value[3], r.PointSpacing) << random.Name;
     }
   }
 }
@@ -309,4 +309,45 @@ TEST(ContourSkin, LegsOnBothSidesMakeAClosedSurface)
     }
   }
   EXPECT_GT(orientedVolume(result->Model), 0.0);
+}
+
+TEST(ContourSkin, TellsProgressAndCanBeCancelledAnywhere)
+{
+  for (const int seed : {0, 2, 7}) // one patch; given up for a network; a network at once
+  {
+    const auto lines = bsrtest::randomStack(seed).Lines;
+    bsrtest::expectWatchable(
+      [&](bsr::Monitor& monitor) { return bsr::skinContours(lines, {}, monitor).status(); });
+  }
+}
+
+TEST(ContourSkin, HandlesAndCavitiesAreWhole)
+{
+  const bsrtest::RandomStack random = bsrtest::randomStack(8);
+  ASSERT_EQ(random.Kind, bsrtest::StackKind::OneTwoOne);
+  std::vector<Polyline> lines = random.Lines;
+  const auto handle = skin(lines);
+  ASSERT_TRUE(handle.isOk()) << handle.status().message();
+  ASSERT_EQ(handle->Skins.size(), 1u);
+  EXPECT_EQ(handle->Skins[0].Contours, static_cast<bsr::Index>(lines.size()));
+  EXPECT_EQ(handle->Skins[0].FoldedPatches, 0);
+  EXPECT_TRUE(handle->Skins[0].Reached);
+  EXPECT_LT(handle->Skins[0].NormalJump, 1e-6);
+  EXPECT_TRUE(handle->Notes.empty());
+}
+
+TEST(ContourSkin, MissedToleranceIsToldPerContour)
+{
+  bsr::ContourSkinOptions options;
+  options.Fit.ControlPointLimit = 60; // below the default: told, not cured
+  options.Fit.Tolerance = 0.05;
+  const auto result = skin(bsrtest::rectangleBasedObject(), options);
+  ASSERT_TRUE(result.isOk());
+  EXPECT_FALSE(result->Skins[0].Reached);
+  int told = 0;
+  for (const bsr::ContourNote& n : result->Notes)
+  {
+    told += n.Text.find("above the tolerance") != std::string::npos ? 1 : 0;
+  }
+  EXPECT_GT(told, 1);
 }
