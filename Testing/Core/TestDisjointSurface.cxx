@@ -1,8 +1,10 @@
 #include "Contour/SurfaceReport.h"
 #include "Crossings.h"
 #include "PublishedSurfaces.h"
+#include "Spline/ClosestPoint.h"
 #include "Spline/Evaluate.h"
 #include "Spline/ModelCheck.h"
+#include "Spline/SampleModel.h"
 #include "Spline/Topology.h"
 
 #include <gtest/gtest.h>
@@ -118,6 +120,80 @@ TEST(DisjointSurface, PublishedJunctionsAreClosed)
     {
       EXPECT_LT(largestJump(m.Model), 1e-6);
       EXPECT_TRUE(degenerate);
+    }
+    else
+    {
+      EXPECT_GT(largestJump(m.Model), 170.0);
+    }
+  }
+}
+
+/// Figure 10 (a): uniform knots along both directions leave the overall shape as it is.
+TEST(DisjointSurface, UniformKnotsKeepTheShape)
+{
+  const DisjointModel periodic = modelOf(publishedSurface(PublishedModel::Asymmetric));
+  const DisjointModel uniform = modelOf(uniformSurface(true));
+  EXPECT_EQ(uniform.Torn, 0);
+  EXPECT_EQ(crossings(uniform.Model), 0);
+  EXPECT_EQ(patchComponents(uniform.Model).second, 1);
+  EXPECT_LT(largestJump(uniform.Model), 1e-6);
+  Monitor monitor;
+  const auto samples = sampleModel(periodic.Model, {}, monitor);
+  ASSERT_TRUE(samples.isOk());
+  const auto deviation = measureDeviation(uniform.Model, samples->Points, {}, monitor);
+  ASSERT_TRUE(deviation.isOk());
+  EXPECT_LT(deviation->Max, 0.01 * 7.0); // of its size
+}
+
+/// Figure 10 (b): along v the contours differ at the ends only, where uniform knots start and end
+/// in the first and last section ("at a predetermined position").
+TEST(DisjointSurface, UniformKnotsAlongVChangeTheEndsOnly)
+{
+  const DisjointSurface periodic = publishedSurface(PublishedModel::Asymmetric);
+  const DisjointSurface uniform = uniformSurface(false);
+  const auto low = disjointRangeV(periodic);
+  const auto own = disjointRangeV(uniform);
+  EXPECT_EQ(low[1] - low[0], own[1] - own[0]);
+  const int order = periodic.OrderV;
+  for (const auto& range : disjointRanges(periodic))
+  {
+    for (const double t : {0.0, 0.21, 0.5, 0.87})
+    {
+      const double u = range[0] + t * (range[1] - range[0]);
+      const auto apart = [&](double v)
+      {
+        return (
+          evaluateDisjoint(periodic, u, low[0] + v) - evaluateDisjoint(uniform, u, own[0] + v))
+          .norm();
+      };
+      for (double v = order - 1.0; v <= own[1] - own[0] - (order - 1.0); v += 0.3)
+      {
+        EXPECT_LT(apart(v), 1e-12) << v;
+      }
+      EXPECT_GT(apart(0.0), 0.1);
+      EXPECT_NEAR(evaluateDisjoint(uniform, u, own[0]).z(), uniform.Rows.front()[0].z(), 1e-12);
+      EXPECT_NEAR(
+        evaluateDisjoint(uniform, u, own[1] - 1e-13).z(), uniform.Rows.back()[0].z(), 1e-9);
+      EXPECT_GT(evaluateDisjoint(periodic, u, low[0]).z(), uniform.Rows.front()[0].z() + 0.1);
+    }
+  }
+}
+
+/// Figure 11: two stages of branching by one equation, arranged as in 6 (a) and in 5.2 (b): closed,
+/// without self-intersection, smooth (a) or with the cusps of 5.2 at both crotches (b).
+TEST(DisjointSurface, TwoStagesByOneEquation)
+{
+  for (const bool point : {true, false})
+  {
+    SCOPED_TRACE(point);
+    const DisjointModel m = modelOf(twoStageSurface(point));
+    EXPECT_EQ(m.Model.Patches.size(), 9u);
+    EXPECT_EQ(m.Torn, 0);
+    EXPECT_EQ(crossings(m.Model), 0);
+    EXPECT_EQ(patchComponents(m.Model).second, 1);
+    if (point)
+    {
+      EXPECT_LT(largestJump(m.Model), 1e-6);
     }
     else
     {
