@@ -6,6 +6,7 @@ CONTOURS is a file of polylines (.vtp, .vtk). Without it one of the objects of p
 below, one base above. Writes model.vtp, model.step, report.csv, femur.pvsm and pictures into the output folder.
 """
 import argparse
+import csv
 import math
 import os
 import sys
@@ -15,15 +16,15 @@ from paraview import servermanager as sm
 
 BUILT_PLUGIN = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "build", "lib",
                             "BSplineReconstruction", "BSplineReconstruction.so")
+OBJECTS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "objects.csv")
 MAKE = '''
 import math, vtk
-circles = %d
 points, lines = vtk.vtkPoints(), vtk.vtkCellArray()
 points.SetDataTypeToDouble()
-def add(x, z, a, b, n):
+def add(ellipse, x, z, a, b, n):
     ids = []
     for i in range(n):
-        if circles:
+        if ellipse:
             t = 2 * math.pi * i / n
             p = (x + a * math.cos(t), b * math.sin(t), z)
         else:
@@ -33,14 +34,8 @@ def add(x, z, a, b, n):
             p = (x + a * (u[0] + t * (v[0] - u[0])), b * (u[1] + t * (v[1] - u[1])), z)
         ids.append(points.InsertNextPoint(p))
     lines.InsertNextCell(n + 1, ids + ids[:1])
-for s in range(14):
-    z = (0.2 if circles else 0.5) * (s + 1)
-    grow = 0.7 + 0.05 * s if s < 7 else 1.0 + 0.02 * (s - 7)
-    if s < 7:
-        for x in (-1, 1):
-            add(5.5 * x, z, 5 * grow, 5 * grow, 48) if circles else add(6 * x, z, 5 * grow, 6 * grow, 48)
-    else:
-        add(0, z, 12 * grow, 7 * grow, 80)
+for ellipse, x, z, a, b, n in %r:
+    add(ellipse, x, z, a, b, n)
 self.GetOutput().SetPoints(points)
 self.GetOutput().SetLines(lines)
 '''
@@ -58,7 +53,10 @@ def arguments():
 
 def source_of(a):
     if a.contours is None:
-        return pv.ProgrammableSource(OutputDataSetType="vtkPolyData", Script=MAKE % (a.object == "circles"))
+        with open(OBJECTS, newline="") as f:
+            rows = [(r["shape"] == "ellipse", *(float(r[k]) for k in ("x", "z", "a", "b")), int(r["points"]))
+                    for r in csv.DictReader(f) if r["object"] == a.object]
+        return pv.ProgrammableSource(OutputDataSetType="vtkPolyData", Script=MAKE % (rows,))
     if not os.path.exists(a.contours):
         sys.exit("femur.py: there is no file " + a.contours)
     return pv.OpenDataFile(a.contours)

@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <map>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,47 +51,41 @@ inline Polyline rectangleAt(const Vec3& center, double a, double b, int n = 12)
   return line;
 }
 
-/// The rectangle-based object of paper 004: 14 slices 0.5 apart, two legs in the lower 7. The paper
-/// gives no other sizes; here legs are 10 x 12 where they meet the base of 24 x 14.
-inline std::vector<Polyline> rectangleBasedObject()
+/// An object of paper 004, "circles" or "rectangles": 14 slices 0.2 or 0.5 apart, two legs in the
+/// lower 7, as Examples/objects.csv has them (half widths a and b; the paper gives no other sizes).
+inline std::vector<Polyline> objectOfThePaper(const std::string& name)
 {
+  std::ifstream file("Examples/objects.csv"); // tests run in the source folder
   std::vector<Polyline> lines;
-  for (int s = 0; s < 14; ++s)
+  std::string row;
+  while (std::getline(file, row))
   {
-    const double z = 0.5 * (s + 1);
-    const double grow = s < 7 ? 0.7 + 0.05 * s : 1.0 + 0.02 * (s - 7);
-    if (s < 7)
+    std::replace(row.begin(), row.end(), ',', ' ');
+    std::istringstream words(row);
+    std::string object;
+    std::string shape;
+    Vec3 center = Vec3::Zero();
+    double a = 0.0;
+    double b = 0.0;
+    int points = 0;
+    words >> object >> shape >> center.x() >> center.z() >> a >> b >> points;
+    if (object == name)
     {
-      lines.push_back(rectangleAt(Vec3(-6.0, 0.0, z), 10.0 * grow, 12.0 * grow));
-      lines.push_back(rectangleAt(Vec3(6.0, 0.0, z), 10.0 * grow, 12.0 * grow));
-    }
-    else
-    {
-      lines.push_back(rectangleAt(Vec3(0.0, 0.0, z), 24.0 * grow, 14.0 * grow, 20));
+      lines.push_back(shape == "ellipse" ? ellipseAt(center, a, b, points)
+                                         : rectangleAt(center, 2.0 * a, 2.0 * b, points / 4));
     }
   }
   return lines;
 }
 
-/// The circle-based object: 14 slices 0.2 apart.
+inline std::vector<Polyline> rectangleBasedObject()
+{
+  return objectOfThePaper("rectangles");
+}
+
 inline std::vector<Polyline> circleBasedObject()
 {
-  std::vector<Polyline> lines;
-  for (int s = 0; s < 14; ++s)
-  {
-    const double z = 0.2 * (s + 1);
-    const double grow = s < 7 ? 0.7 + 0.05 * s : 1.0 + 0.02 * (s - 7);
-    if (s < 7)
-    {
-      lines.push_back(ellipseAt(Vec3(-5.5, 0.0, z), 5.0 * grow, 5.0 * grow));
-      lines.push_back(ellipseAt(Vec3(5.5, 0.0, z), 5.0 * grow, 5.0 * grow));
-    }
-    else
-    {
-      lines.push_back(ellipseAt(Vec3(0.0, 0.0, z), 12.0 * grow, 7.0 * grow, 80));
-    }
-  }
-  return lines;
+  return objectOfThePaper("circles");
 }
 
 /// A branch of a body: a tube about an axis that moves with height.

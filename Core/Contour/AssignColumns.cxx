@@ -547,12 +547,18 @@ private:
     }
     const int n = this->Net.Tubes[t].Columns;
     std::vector<double> shift(static_cast<std::size_t>(n), 0.0);
-    for (const ArcEnd& a : arcs)
+    for (std::size_t i = 0; i < arcs.size(); ++i)
     {
+      const ArcEnd& a = arcs[i];
+      const ArcEnd& next = arcs[(i + 1) % arcs.size()];
+      const double from = wrapped(a.share() - shares.back()[a.column()]);
+      const double to = wrapped(next.share() - shares.back()[next.column()]);
       for (int k = 0; k < a.Arc->Spans; ++k)
       {
         const int u = (a.column() + k) % n;
-        shift[u] = wrapped(placeOn(a, k) - shares.back()[u]);
+        const double r = static_cast<double>(k) / a.Arc->Spans;
+        shift[u] = this->Options.FollowMatch ? wrapped(placeOn(a, k) - shares.back()[u])
+                                             : (1.0 - r) * from + r * to;
       }
     }
     const std::size_t m = shares.size();

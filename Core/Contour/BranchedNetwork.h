@@ -85,6 +85,8 @@ struct NetworkOptions
   int PointsPerSection = 0;      ///< 0: as the contours' shape needs
   double SectionTolerance = 0.1; ///< then: of the median distance of their points
   double Refinement = 1.0;       ///< factor on the columns that tubes need
+  /// Columns below a junction go where its match of contours wants them; false: only its corners.
+  bool FollowMatch = true;
   EndCaps Caps = EndCaps::Inside;
   /// Lower and upper end of each contour of the stack, where it is the end of a tube; empty: Caps.
   std::vector<std::array<bool, 2>> ClosedEnds;

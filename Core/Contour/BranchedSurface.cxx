@@ -5,6 +5,7 @@
 #include "Contour/SurfaceReport.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace bsr
 {
@@ -250,22 +251,26 @@ Result<BranchedSurface> makeBranchedSurface(
   rows.Position = options.JunctionPosition;
   BranchedSurface best;
   double done = 0.0;
-  for (const double refinement : {1.0, 1.5, 2.2}) // more columns where a patch folds
+  // other and more columns where a patch folds
+  const std::pair<double, bool> columns[] = {
+    {1.0, true}, {1.0, false}, {1.5, true}, {1.5, false}, {2.2, false}};
+  for (const auto& [refinement, follow] : columns)
   {
     no.Refinement = refinement;
-    SubMonitor first(monitor, done, done + 0.1);
+    no.FollowMatch = follow;
+    SubMonitor first(monitor, done, done + 0.05);
     const auto net = makeNetwork(stack, no, first);
     if (!net)
     {
       return net.status();
     }
-    SubMonitor rest(monitor, done + 0.1, done + 0.33);
+    SubMonitor rest(monitor, done + 0.05, done + 0.2);
     auto s = Maker(stack, *net, options, rows).run(rest);
     if (!s)
     {
       return s;
     }
-    done += 0.33;
+    done += 0.2;
     if (best.Model.Patches.empty() || s->FoldedPatches < best.FoldedPatches)
     {
       best = std::move(*s);
