@@ -9,9 +9,9 @@
  * one patch covers legs, crotch and base, and the legs' ends close convexly. Planes, order,
  * orientation, correspondence, branching and the arrangement are found from the polylines, for any
  * number of legs of any length, on several levels, above or below the base. Parts that are closed
- * at both ends or have legs on both sides become closed complexes of patches with continuous
- * tangent planes. Contours inside others (canals) get surfaces of their own, with normals into the
- * canal.
+ * at both ends or have legs on both sides become tubes and junctions of patches with
+ * continuous tangent planes, so do parts where one patch folds or misses the tolerance. Contours
+ * inside others (canals) get surfaces of their own, with normals into the canal.
  *
  * The number of control points grows where the surface misses its data, until the Tolerance is met
  * or the ControlPointLimit reached.
@@ -31,7 +31,7 @@
  * gives), `RMS`, `Max` (distances of the contours from the surface), `ResliceRMS`, `ResliceMax`
  * (the surface cut by the contours' planes against the contours), `PointSpacing` (median, of the
  * contours), `SecondDerivativeJump` (largest jump across a knot over the largest second derivative:
- * 0 is C2), `NormalJump` (degrees, between patches of a complex), `EndHeight` (of the highest end
+ * 0 is C2), `NormalJump` (degrees, between patches of tubes), `EndHeight` (of the highest end
  * of a leg beyond its last contour, in slice distances), `ConvexShare` (of the points that close a
  * leg, the worst leg), `SignChangesData`, `SignChangesModel` (of the curvature along the contours
  * and along the surface there), `FoldedPatches`. Field data of ports 0 and 2: `RMS`, `Max`,
@@ -137,8 +137,8 @@ public:
   ///@}
 
   ///@{
-  /// LAYOUT_AUTOMATIC (default): one patch where that meets the tolerance without a fold, else a
-  /// complex of patches with continuous tangent planes. SINGLE_PATCH: always one patch, where the
+  /// LAYOUT_AUTOMATIC (default): one patch where that meets the tolerance without a fold, else
+  /// tubes of patches with continuous tangent planes. SINGLE_PATCH: always one patch, where the
   /// base is open.
   vtkSetClampMacro(Layout, int, LAYOUT_AUTOMATIC, SINGLE_PATCH);
   vtkGetMacro(Layout, int);

@@ -66,8 +66,9 @@ public:
     this->Choices.Caps.assign(net.Tubes.size(), {rows, rows});
   }
 
-  /// The first surface without a fold, after relaxation where need be; else the best one.
-  Result<BranchedSurface> run(Monitor& monitor)
+  /// The first surface without a fold, after relaxation where need be and wanted; else the best
+  /// one.
+  Result<BranchedSurface> run(bool relaxing, Monitor& monitor)
   {
     std::vector<BranchedSurface> tried;
     for (const Trial& trial : Trials)
@@ -102,8 +103,8 @@ public:
     tried.resize(
       std::min(tried.size(), tried[0].Model.Patches.size() > MaximumRefined ? 1 : Relaxed));
     // As published the patches at a crotch are singular: nothing can be done about it.
-    const bool relax = this->Rows.Kind == JunctionKind::Superimposed ||
-                       this->Rows.Tangency == JunctionTangency::Space;
+    const bool relax = relaxing && (this->Rows.Kind == JunctionKind::Superimposed ||
+                                     this->Rows.Tangency == JunctionTangency::Space);
     for (std::size_t k = 0; relax && k < tried.size() && tried[0].FoldedPatches > 0; ++k)
     {
       const double each = 0.45 / static_cast<double>(tried.size());
@@ -249,36 +250,56 @@ Result<BranchedSurface> makeBranchedSurface(
   rows.Kind = options.Kind;
   rows.Tangency = options.Tangency;
   rows.Position = options.JunctionPosition;
+  // other and more columns where a patch folds; first without relaxation, which takes long
+  struct Columns
+  {
+    double Refinement;
+    bool Follow;
+    int Folded;
+  };
+  std::vector<Columns> columns{
+    {1.0, true, 0}, {1.0, false, 0}, {1.5, true, 0}, {1.5, false, 0}, {2.2, false, 0}};
   BranchedSurface best;
   double done = 0.0;
-  // other and more columns where a patch folds
-  const std::pair<double, bool> columns[] = {
-    {1.0, true}, {1.0, false}, {1.5, true}, {1.5, false}, {2.2, false}};
-  for (const auto& [refinement, follow] : columns)
+  for (const bool relaxing : {false, true})
   {
-    no.Refinement = refinement;
-    no.FollowMatch = follow;
-    SubMonitor first(monitor, done, done + 0.05);
-    const auto net = makeNetwork(stack, no, first);
-    if (!net)
+    const double share = (relaxing ? 0.7 : 0.3) / static_cast<double>(columns.size());
+    for (Columns& c : columns)
     {
-      return net.status();
+      no.Refinement = c.Refinement;
+      no.FollowMatch = c.Follow;
+      SubMonitor part(monitor, done, done + share);
+      done += share;
+      SubMonitor first(part, 0.0, 0.2);
+      const auto net = makeNetwork(stack, no, first);
+      if (!net)
+      {
+        return net.status();
+      }
+      SubMonitor rest(part, 0.2, 1.0);
+      auto s = Maker(stack, *net, options, rows).run(relaxing, rest);
+      if (!s)
+      {
+        return s;
+      }
+      c.Folded = s->FoldedPatches;
+      if (best.Model.Patches.empty() || s->FoldedPatches < best.FoldedPatches)
+      {
+        best = std::move(*s);
+      }
+      if (best.FoldedPatches == 0)
+      {
+        monitor.progress(1.0);
+        return best;
+      }
+      if (best.Model.Patches.size() > MaximumRefined)
+      {
+        columns.resize(1);
+        break;
+      }
     }
-    SubMonitor rest(monitor, done + 0.05, done + 0.2);
-    auto s = Maker(stack, *net, options, rows).run(rest);
-    if (!s)
-    {
-      return s;
-    }
-    done += 0.2;
-    if (best.Model.Patches.empty() || s->FoldedPatches < best.FoldedPatches)
-    {
-      best = std::move(*s);
-    }
-    if (best.FoldedPatches == 0 || best.Model.Patches.size() > MaximumRefined)
-    {
-      break;
-    }
+    std::stable_sort(columns.begin(), columns.end(),
+      [](const Columns& a, const Columns& b) { return a.Folded < b.Folded; });
   }
   return best;
 }

@@ -6,7 +6,7 @@ namespace bsr
 {
 enum class SkinLayout
 {
-  Automatic,  ///< one patch where it meets the tolerance without a fold, else a complex of patches
+  Automatic,  ///< one patch where it meets the tolerance without a fold, else tubes of patches
   SinglePatch ///< one patch for all parts with an open base
 };
 
@@ -31,7 +31,7 @@ struct SkinReport
   Shell Side = Shell::Outer;
   Index Contours = 0;
   bool Closed = false;     ///< no border
-  bool SinglePatch = true; ///< one C2 tensor-product surface; otherwise a complex of G1 patches
+  bool SinglePatch = true; ///< one C2 tensor-product surface; otherwise tubes of G1 patches
   Index FirstPatch = 0;    ///< of the model, and the number of its patches
   Index Patches = 0;
   int Rows = 0; ///< of the data set
@@ -64,9 +64,9 @@ struct ContourSkinResult
  * Surfaces over stacks of contours that split and merge: paper 004 (H. S. Kim et al., ICCS 2004),
  * its arrangement of points automated. Every connected part of the stack gets one bicubic (or
  * higher) C2 tensor-product surface, open at its base, closed convexly at the legs. A part whose
- * base is closed, too, that has legs on both sides, or that one patch cannot follow, gets a complex
- * of patches with continuous tangent planes. Holes
- * (contours inside contours) are skins of their own, with normals into the hole. Fails where
+ * base is closed, too, that has legs on both sides or handles, or that one patch cannot follow,
+ * gets tubes of patches and junctions between them with continuous tangent planes (fitNetwork).
+ * Holes (contours inside contours) are skins of their own, with normals into the hole. Fails where
  * buildStack fails, on an option out of range, or where no part can be skinned (the message tells
  * why for the first contours).
  */

@@ -47,7 +47,7 @@ public:
       {
         this->Dense(i, i) += 1e-9 * this->Dense(i, i) + 1e-12;
       }
-      const Eigen::LDLT<Eigen::MatrixXd> solver(this->Dense);
+      const Eigen::LLT<Eigen::MatrixXd> solver(this->Dense);
       x = solver.solve(right);
       return solver.info() == Eigen::Success && x.allFinite();
     }
@@ -66,7 +66,7 @@ public:
   }
 
 private:
-  static constexpr int Least = 900;
+  static constexpr int Least = 1200;
   static constexpr std::size_t Most = 1000000;
 
   void merge()
