@@ -94,8 +94,8 @@ public:
       const auto share = [&](std::size_t i)
       { return static_cast<double>(i) / static_cast<double>(count); };
       SubMonitor part(this->Mon, share(k), share(k + 1));
-      const Status s = k < parts.size() ? this->skinPart(parts[k], part)
-                                        : this->skinSheet(sheets[k - parts.size()], part);
+      Status s = k < parts.size() ? this->skinPart(parts[k], part)
+                                  : this->skinSheet(sheets[k - parts.size()], part);
       if (!s)
       {
         return s;
@@ -193,7 +193,7 @@ private:
     {
       const auto count = static_cast<double>(pieces.size());
       SubMonitor part(monitor, static_cast<double>(k) / count, static_cast<double>(k + 1) / count);
-      if (const Status s = this->skinPiece(pieces[k], !single, part); !s)
+      if (Status s = this->skinPiece(pieces[k], !single, part); !s)
       {
         return s;
       }

@@ -166,6 +166,7 @@ SliceError compareSlice(const SampledModel& mesh, const ContourStack& stack, std
   }
   out.There = distancesTo(cut, points);
   std::vector<Vec3> middles;
+  middles.reserve(cut.size());
   for (const Segment& c : cut)
   {
     middles.emplace_back(0.5 * (c[0] + c[1]));
