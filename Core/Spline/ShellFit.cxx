@@ -229,12 +229,13 @@ private:
   }
 
   /// Passes go on, accelerated, until they gain next to nothing: alone, parameters drift along the
-  /// surface for hundreds of passes. Undone where it makes patches fold.
+  /// surface for hundreds of passes. Where patches fold in the end, the last net without folds is
+  /// taken.
   Status converge(double lambda)
   {
-    constexpr double Growth = 1.02; ///< of the distances, for the steps to be forgotten
-    const NetPoints surface = this->Surface;
-    const std::vector<FitPoint> points = this->Points;
+    constexpr double Growth = 1.02;  ///< of the distances, for the steps to be forgotten
+    NetPoints sound = this->Surface; // the last one without folds
+    std::vector<FitPoint> points = this->Points;
     NetMixer mixer(MixedSteps);
     double before = std::numeric_limits<double>::infinity();
     int idle = 0;
@@ -253,6 +254,12 @@ private:
       }
       before = now;
       const NetPoints to = this->Surface;
+      this->Judge->look(to);
+      if (this->Judge->score() < ShellFaults::Severe)
+      {
+        sound = to;
+        points = this->Points;
+      }
       this->Surface = mixer.next(from, to);
       if (i + 1 == this->Options.MostPasses || idle == 2)
       {
@@ -268,8 +275,9 @@ private:
     this->Judge->look(this->Surface);
     if (this->Judge->score() >= ShellFaults::Severe)
     {
-      this->Surface = surface;
-      this->Points = points;
+      this->Surface = std::move(sound);
+      this->Points = std::move(points);
+      this->correct();
     }
     return Status::ok();
   }
