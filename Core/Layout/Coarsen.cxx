@@ -5,6 +5,7 @@
 #include "Layout/LocalCoarsener.h"
 #include "Layout/NearestQuad.h"
 #include "Layout/RelaxLayout.h"
+#include "Layout/TurnAndCollapse.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,9 @@ namespace bsr
 namespace
 {
 using coarsening::Bounds;
+using coarsening::DeepCoarsener;
 using coarsening::LocalCoarsener;
+constexpr double MostMiss = 0.1; ///< of the count, above which everything is tried
 
 /// The whole of it: strips and local operations in turn, under bounds that get looser.
 class Coarsener
@@ -81,10 +84,44 @@ public:
         }
       }
     }
-    return Status::ok();
+    return this->count() > this->O.Quads * (1.0 + MostMiss) ? this->goDeeper(bounds.back())
+                                                            : Status::ok();
   }
 
 private:
+  /// Where single steps lead no further, pairs of steps.
+  Status goDeeper(const Bounds& bound)
+  {
+    SubMonitor quiet(this->M, 0.0, 0.0);
+    const int most = static_cast<int>(std::floor(this->O.Quads * (1.0 + this->O.Tolerance)));
+    for (bool any = true; any && this->count() > most;)
+    {
+      DeepCoarsener deep(this->D, this->Reference, this->O, bound, this->Cell2);
+      any = false;
+      while (deep.count() > most && deep.turnAndCollapse(quiet))
+      {
+        any = true;
+        if (!deep.collapseTo(most, bound.Cost, quiet))
+        {
+          return Status::cancelled();
+        }
+      }
+      if (this->M.cancelled())
+      {
+        return Status::cancelled();
+      }
+      if (any)
+      {
+        this->D = deep.draft();
+        if (Status s = relaxLayout(this->D, this->Reference, 5, quiet, 2); !s)
+        {
+          return s;
+        }
+      }
+    }
+    return Status::ok();
+  }
+
   int count() const { return static_cast<int>(this->D.Mesh.Quads.size()); }
 
   Status local(int target, const Bounds& bound)

@@ -15,7 +15,9 @@ namespace
 constexpr double PoorCost = 25.0; ///< of a layout: a finer map made coarser may do better
 constexpr double WeakCost = 40.0; ///< of a layout: a still finer map may do better
 constexpr double BadCost = 60.0;  ///< of a layout: paired triangles may do better
-constexpr int MostFine = 6000;    ///< quads of a map to be made coarser
+constexpr double MostMiss = 0.1;  ///< of the count; beyond, other roads are taken
+constexpr double MissCost = 30.0;
+constexpr int MostFine = 6000; ///< quads of a map to be made coarser
 
 /// One component and what is wanted of it.
 struct Task
@@ -57,8 +59,10 @@ struct Candidates
     {
       return;
     }
+    const auto got = static_cast<double>(draft.Mesh.Quads.size());
     const double cost =
-      layoutCost(draft, report, task.Surface, task.Reference, task.Quads, monitor);
+      layoutCost(draft, report, task.Surface, task.Reference, task.Quads, monitor) +
+      (std::abs(got - task.Quads) > MostMiss * task.Quads ? MissCost : 0.0);
     if (cost < this->Cost)
     {
       this->Draft = std::move(draft);

@@ -14,7 +14,7 @@ enum class LayoutStage
   Paired = 1,       ///< pairs of triangles, split and made coarser: the fallback
   MorseSmale = 2,   ///< Morse-Smale complex of an eigenfunction
   Coarsened = 3,    ///< a finer map, made coarser
-  Box = 4           ///< six quads around a speck
+  Box = 4           ///< a speck: six quads around it, or one in its boundary
 };
 
 struct FieldLayoutOptions

@@ -155,7 +155,7 @@ public:
     return true;
   }
 
-private:
+protected:
   double cost(Index q, int k) const
   {
     const auto& c = this->E.Quads[q];

@@ -6,8 +6,6 @@ namespace bsr
 {
 namespace
 {
-constexpr int MostEdges = 7; ///< of a vertex, where no operation has to start from more
-
 bool sameCorners(QuadEditor::Quad a, QuadEditor::Quad b)
 {
   std::sort(a.begin(), a.end());
@@ -231,7 +229,7 @@ Index QuadEditor::collapse(Index quad, int k)
   {
     return -1;
   }
-  const int most = std::max({MostEdges, this->valence(a), this->valence(c)});
+  const int most = std::max({this->MostEdges, this->valence(a), this->valence(c)});
   std::array<bool, 2> crease{};
   for (int i = 0; i < 2; ++i)
   {
@@ -381,7 +379,7 @@ bool QuadEditor::rotate(Index quad, int k, int way)
     this->unlink(quad, v);
     this->unlink(other, v);
   }
-  int most = MostEdges;
+  int most = this->MostEdges;
   for (int side = 0; side < 2; ++side)
   {
     const Index target = side == 0 ? quad : other;

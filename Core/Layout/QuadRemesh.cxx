@@ -1,6 +1,7 @@
 #include "Layout/QuadRemesh.h"
 
 #include "Layout/BoxLayout.h"
+#include "Layout/ComponentShares.h"
 #include "Layout/FitLayout.h"
 #include "Layout/FitMoves.h"
 #include "Mesh/Decimate.h"
@@ -9,7 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
-#include <numeric>
+#include <tuple>
 
 namespace bsr
 {
@@ -17,6 +18,7 @@ namespace
 {
 constexpr int MostQuads = 200000;
 constexpr int SpeckQuads = 11; ///< spheres of no more quads become boxes
+constexpr int DiscQuads = 3;   ///< discs of no more quads become one
 } // namespace
 
 Status checkOptions(const QuadRemeshOptions& o)
@@ -110,6 +112,11 @@ int boundaryLoops(const TriangleSurface& s)
   return static_cast<int>(std::count(s.Virtual.begin(), s.Virtual.end(), 1));
 }
 
+ComponentSize sizeOf(const TriangleSurface& s)
+{
+  return {s.area(), leastQuads(s.eulerCharacteristic(), boundaryLoops(s))};
+}
+
 /// Some points of the surface as it came, so that the distance is not to the decimated one only.
 std::vector<Vec3> samplesOf(const TriangleSurface& s)
 {
@@ -125,35 +132,6 @@ std::vector<Vec3> samplesOf(const TriangleSurface& s)
     }
   }
   return samples;
-}
-
-/// How many quads each component gets: by area, but each enough to show its shape, or, where there
-/// are very many specks, six.
-std::vector<int> shares(const std::vector<TriangleSurface>& surfaces, int quads)
-{
-  const auto n = static_cast<double>(surfaces.size());
-  const int least = static_cast<int>(std::clamp(0.3 * quads / n, 6.0, 24.0));
-  std::vector<double> area;
-  area.reserve(surfaces.size());
-  for (const TriangleSurface& s : surfaces)
-  {
-    area.push_back(s.area());
-  }
-  // Largest first: those whose share is too small are at the end.
-  double left = quads;
-  double leftArea = std::accumulate(area.begin(), area.end(), 0.0);
-  std::vector<int> out(surfaces.size(), least);
-  std::size_t large = surfaces.size();
-  while (large > 1 && area[large - 1] * left < least * leftArea)
-  {
-    left = std::max(left - least, 0.0);
-    leftArea -= area[--large];
-  }
-  for (std::size_t i = 0; i < large; ++i)
-  {
-    out[i] = std::max(least, static_cast<int>(std::lround(left * area[i] / leftArea)));
-  }
-  return out;
 }
 
 void append(PartitionedSurface& all, const PartitionedSurface& part, Index firstCell)
@@ -187,12 +165,7 @@ Result<LayoutDraft> morseDraft(const TriangleSurface& s, const ReferenceSurface&
   {
     return found.status();
   }
-  Index cells = 0;
-  for (const MorseReport& r : layout.Morse)
-  {
-    cells += r.Cells;
-  }
-  append(layout.Surface, found->Surface, cells);
+  layout.Surface = std::move(found->Surface);
   layout.Morse.push_back(found->Report);
   return std::move(found->Draft);
 }
@@ -223,7 +196,7 @@ Result<FieldLayout> layOut(TriangleSurface& s, const ReferenceSurface& reference
     return draft ? Result<FieldLayout>(FieldLayout{std::move(*draft), LayoutStage::MorseSmale})
                  : Result<FieldLayout>(draft.status());
   }
-  append(layout.Surface, {s.toMesh(), {}, {}, {}}, 0);
+  layout.Surface = {s.toMesh(), {}, {}, {}};
   auto found =
     fieldLayout(s, reference, *sizing, {quads, options.Seed, options.Sizing, field}, laying);
   SubMonitor moving(monitor, 0.9, 0.97);
@@ -251,15 +224,37 @@ Result<FieldLayout> layOut(TriangleSurface& s, const ReferenceSurface& reference
   return found;
 }
 
-/// Adds the layout of a component, which is decimated on the way; `share` is that of its area.
-Status addComponent(TriangleSurface& s, int quads, double share, const QuadRemeshOptions& options,
+/// Is the component, for so many quads, one that gets a box around it?
+bool boxed(const TriangleSurface& s, int quads, const QuadRemeshOptions& options)
+{
+  return options.Method == LayoutMethod::FieldAligned && quads <= SpeckQuads && isSphere(s);
+}
+
+/// Or one quad?
+bool flat(const TriangleSurface& s, int quads, const QuadRemeshOptions& options)
+{
+  return options.Method == LayoutMethod::FieldAligned && quads <= DiscQuads && isDisc(s);
+}
+
+/// The layout of a speck; no quads if it is none.
+LayoutDraft speckLayout(const TriangleSurface& s, int quads, const QuadRemeshOptions& options)
+{
+  if (boxed(s, quads, options))
+  {
+    return boxLayout(s);
+  }
+  return flat(s, quads, options) ? singleQuad(s) : LayoutDraft{};
+}
+
+/// The layout of a component, which is decimated on the way; `layout` is of that alone.
+Status layOutComponent(TriangleSurface& s, int quads, const QuadRemeshOptions& options,
   const Sizing::Field& field, QuadLayout& layout, Monitor& monitor)
 {
   Clock clock;
   const std::vector<Vec3> samples = samplesOf(s);
   const int euler = s.eulerCharacteristic();
-  const bool morse = options.Method == LayoutMethod::MorseSmale;
-  const bool speck = !morse && quads <= SpeckQuads && isSphere(s);
+  LayoutDraft made = speckLayout(s, quads, options);
+  const bool speck = !made.Mesh.Quads.empty();
   if (monitor.cancelled())
   {
     return Status::cancelled();
@@ -280,7 +275,7 @@ Status addComponent(TriangleSurface& s, int quads, double share, const QuadRemes
   ReferenceSurface reference(s);
   reference.Samples = surfaceSamples(s, 400 + 12 * quads);
   SubMonitor laying(monitor, 0.4, 1.0);
-  auto found = speck ? Result<FieldLayout>(FieldLayout{boxLayout(s), LayoutStage::Box})
+  auto found = speck ? Result<FieldLayout>(FieldLayout{std::move(made), LayoutStage::Box})
                      : layOut(s, reference, quads, options, field, layout, laying);
   if (!found)
   {
@@ -288,10 +283,10 @@ Status addComponent(TriangleSurface& s, int quads, double share, const QuadRemes
   }
   if (speck)
   {
-    append(layout.Surface, {s.toMesh(), {}, {}, {}}, 0);
+    layout.Surface = {s.toMesh(), {}, {}, {}};
   }
   layout.Seconds.Layout += clock.lap();
-  layout.MinimumQuads += leastQuads(euler, boundaryLoops(s));
+  layout.MinimumQuads = leastQuads(euler, boundaryLoops(s));
   const LayoutReport report = checkLayout(found->Draft.Mesh);
   if (!report.Valid || report.Euler != euler)
   {
@@ -299,16 +294,108 @@ Status addComponent(TriangleSurface& s, int quads, double share, const QuadRemes
                           (report.Valid ? std::string("the topology changed") : report.Problem) +
                           "; try another NumberOfQuads or Seed.");
   }
-  const LayoutDistance d = layoutDistance(found->Draft.Mesh, s, reference, samples, monitor);
+  layout.Distance = layoutDistance(found->Draft.Mesh, s, reference, samples, monitor);
   if (monitor.cancelled())
   {
     return Status::cancelled();
   }
-  layout.Distance.Maximum = std::max(layout.Distance.Maximum, d.Maximum);
-  layout.Distance.Mean += share * d.Mean;
   layout.Stages.push_back(found->Stage);
-  append(layout.Mesh, found->Draft.Mesh);
+  layout.Mesh = std::move(found->Draft.Mesh);
   layout.Seconds.Measure += clock.lap();
+  return Status::ok();
+}
+
+/// Adds the layout of a component; `share` is that of its area.
+void append(QuadLayout& all, const QuadLayout& part, double share)
+{
+  Index cells = 0;
+  for (const MorseReport& r : all.Morse)
+  {
+    cells += r.Cells;
+  }
+  append(all.Surface, part.Surface, cells);
+  append(all.Mesh, part.Mesh);
+  all.Morse.insert(all.Morse.end(), part.Morse.begin(), part.Morse.end());
+  all.Stages.insert(all.Stages.end(), part.Stages.begin(), part.Stages.end());
+  all.MinimumQuads += part.MinimumQuads;
+  all.Distance.Maximum = std::max(all.Distance.Maximum, part.Distance.Maximum);
+  all.Distance.Mean += share * part.Distance.Mean;
+  all.Seconds.Decimation += part.Seconds.Decimation;
+  all.Seconds.Layout += part.Seconds.Layout;
+  all.Seconds.Measure += part.Seconds.Measure;
+}
+
+/// In which order the components are laid out: those of many handles, which may need more quads
+/// than they are given, and specks, which may take less, come first, so that the others can make up
+/// for it.
+std::vector<std::size_t> workOrder(
+  const std::vector<TriangleSurface>& surfaces, const QuadRemeshOptions& options)
+{
+  std::vector<ComponentSize> sizes;
+  sizes.reserve(surfaces.size());
+  for (const TriangleSurface& s : surfaces)
+  {
+    sizes.push_back(sizeOf(s));
+  }
+  const std::vector<int> counts = componentShares(sizes, options.NumberOfQuads);
+  std::vector<std::tuple<int, bool, std::size_t>> keys;
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+  {
+    const TriangleSurface& s = surfaces[i];
+    const bool speck = boxed(s, counts[i], options) || flat(s, counts[i], options);
+    keys.emplace_back(std::min(0, s.eulerCharacteristic()), !speck, i);
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<std::size_t> order;
+  order.reserve(keys.size());
+  for (const auto& key : keys)
+  {
+    order.push_back(std::get<2>(key));
+  }
+  return order;
+}
+
+/// The layouts of all components.
+Status layOutAll(std::vector<TriangleSurface>& surfaces, const QuadRemeshOptions& options,
+  const Sizing::Field& field, QuadLayout& layout, Monitor& monitor)
+{
+  const std::vector<std::size_t> order = workOrder(surfaces, options);
+  std::vector<ComponentSize> left; // to be laid out, in this order
+  double total = 0.0;
+  for (std::size_t i : order)
+  {
+    left.push_back(sizeOf(surfaces[i]));
+    total += left.back().Area;
+  }
+  std::vector<QuadLayout> parts(surfaces.size());
+  std::vector<double> share(surfaces.size());
+  std::vector<int> counts = componentShares(left, options.NumberOfQuads);
+  int quads = options.NumberOfQuads;
+  double done = 0.0;
+  for (std::size_t i : order)
+  {
+    share[i] = left.front().Area / total;
+    SubMonitor part(monitor, done, done + share[i]);
+    done += share[i];
+    const int count = counts.front();
+    if (Status status = layOutComponent(surfaces[i], count, options, field, parts[i], part);
+        !status)
+    {
+      return status;
+    }
+    const auto made = static_cast<int>(parts[i].Mesh.Quads.size());
+    quads -= made;
+    left.erase(left.begin());
+    counts.erase(counts.begin());
+    if (made != count && !left.empty())
+    {
+      counts = componentShares(left, std::max(quads, 1));
+    }
+  }
+  for (std::size_t i = 0; i < parts.size(); ++i)
+  {
+    append(layout, parts[i], share[i]);
+  }
   return Status::ok();
 }
 } // namespace
@@ -356,24 +443,10 @@ Result<QuadLayout> quadRemesh(
   {
     return surfaces.status();
   }
-  double total = 0.0;
-  for (const TriangleSurface& s : *surfaces)
-  {
-    total += s.area();
-  }
   layout.Seconds.Repair = clock.lap();
-  const std::vector<int> counts = shares(*surfaces, options.NumberOfQuads);
-  double done = 0.0;
-  for (std::size_t i = 0; i < surfaces->size(); ++i)
+  if (Status status = layOutAll(*surfaces, options, field, layout, rest); !status)
   {
-    TriangleSurface& s = (*surfaces)[i];
-    const double share = s.area() / total;
-    SubMonitor part(rest, done, done + share);
-    done += share;
-    if (Status status = addComponent(s, counts[i], share, options, field, layout, part); !status)
-    {
-      return status;
-    }
+    return status;
   }
   clock.lap();
   layout.Report = checkLayout(layout.Mesh);
