@@ -17,6 +17,7 @@ namespace
 using coarsening::Bounds;
 using coarsening::DeepCoarsener;
 using coarsening::LocalCoarsener;
+constexpr int MostMended = 2500; ///< quads
 constexpr double MostMiss = 0.1; ///< of the count, above which everything is tried
 
 /// The whole of it: strips and local operations in turn, under bounds that get looser.
@@ -113,13 +114,19 @@ private:
       if (any)
       {
         this->D = deep.draft();
-        if (Status s = relaxLayout(this->D, this->Reference, 5, quiet, 2); !s)
+        if (Status s = relaxLayout(this->D, this->Reference, 5, quiet, this->mending()); !s)
         {
           return s;
         }
       }
     }
     return Status::ok();
+  }
+
+  /// Where many handles leave no room, most quads would be mended over and over: only near the end.
+  int mending() const
+  {
+    return -6 * this->Euler < this->O.Quads || this->count() < MostMended ? 2 : 0;
   }
 
   int count() const { return static_cast<int>(this->D.Mesh.Quads.size()); }
@@ -134,7 +141,7 @@ private:
       return Status::cancelled();
     }
     this->D = local.draft();
-    return relaxLayout(this->D, this->Reference, 5, m, 2);
+    return relaxLayout(this->D, this->Reference, 5, m, this->mending());
   }
 
   std::vector<double> sides(const std::vector<Vec3>& places) const

@@ -37,6 +37,7 @@ struct Candidates
   LayoutDraft Draft;
   double Cost = std::numeric_limits<double>::infinity();
   LayoutStage Stage = LayoutStage::Parametrized;
+  bool Folded = true;
   bool NoMaps = false; ///< it is no use to try finer maps
 
   /// Nothing yet, or folded quads or vertices of too many.
@@ -50,7 +51,7 @@ struct Candidates
     return report.Flipped > 0 || report.MaxValence > 8;
   }
 
-  /// Keeps the draft if it is sound and better.
+  /// Keeps the draft if it is valid and better.
   void offer(const Task& task, LayoutDraft draft, LayoutStage stage, Monitor& monitor)
   {
     const LayoutReport report = checkLayout(draft.Mesh);
@@ -63,8 +64,11 @@ struct Candidates
     const double cost =
       layoutCost(draft, report, task.Surface, task.Reference, task.Quads, monitor) +
       (std::abs(got - task.Quads) > MostMiss * task.Quads ? MissCost : 0.0);
-    if (cost < this->Cost)
+    // What is not folded comes before what is, whatever else.
+    const bool folded = report.Flipped > 0;
+    if (folded == this->Folded ? cost < this->Cost : !folded)
     {
+      this->Folded = folded;
       this->Draft = std::move(draft);
       this->Cost = cost;
       this->Stage = stage;
@@ -112,27 +116,45 @@ Status coarsenedRoad(const Task& task, int fine, Candidates& best, Monitor& moni
   return Status::ok();
 }
 
-/// By pairs of triangles, four quads each, made coarser: this works for any surface.
-Status pairedRoad(const Task& task, Candidates& best, Monitor& monitor)
+/// Pairs of triangles of a surface remeshed to about so many quads, four quads each.
+Status pairedDraft(const Task& task, int quads, LayoutDraft& draft, Monitor& monitor)
 {
-  const int finer =
-    std::max(3 * task.Quads, std::min(1500, 12 * task.Quads)) - 10 * std::min(0, task.Euler);
-  SubMonitor first(monitor, 0.0, 0.3);
   TriangleSurface fine = task.Surface;
   auto sizing = Sizing::measured(
-    task.Surface, task.Reference, finer, task.Options.Kind, task.Options.Field, monitor);
+    task.Surface, task.Reference, quads, task.Options.Kind, task.Options.Field, monitor);
   if (!sizing)
   {
     return sizing.status();
   }
-  const double cell = sizing->cellFor(finer);
+  const double cell = sizing->cellFor(quads);
   const double edge = std::sqrt(8.0 / std::sqrt(3.0));
   const auto length = [&](const Vec3& p) { return edge * sizing->side(p, cell); };
-  if (Status status = remesh(fine, task.Reference, length, 8, first); !status)
+  if (Status status = remesh(fine, task.Reference, length, 8, monitor); !status)
   {
     return status;
   }
-  LayoutDraft draft = pairTriangles(fine);
+  draft = pairTriangles(fine);
+  return Status::ok();
+}
+
+/// By pairs of triangles, made coarser: this works for any surface.
+Status pairedRoad(const Task& task, Candidates& best, Monitor& monitor)
+{
+  int finer =
+    std::max(3 * task.Quads, std::min(1500, 12 * task.Quads)) - 10 * std::min(0, task.Euler);
+  SubMonitor first(monitor, 0.0, 0.3);
+  LayoutDraft draft;
+  for (int attempt = 0; attempt < 3; ++attempt, finer *= 2)
+  {
+    if (Status status = pairedDraft(task, finer, draft, first); !status)
+    {
+      return status;
+    }
+    if (checkLayout(draft.Mesh).Flipped == 0)
+    {
+      break; // what is folded at the start may stay so
+    }
+  }
   SubMonitor second(monitor, 0.3, 1.0);
   LayoutDraft coarse = draft;
   if (Status s = coarsenTo(task, coarse, second); !s)
