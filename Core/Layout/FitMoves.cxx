@@ -210,23 +210,6 @@ private:
     }
   }
 
-  std::vector<Index> quadsAt(const std::vector<Index>& vertices) const
-  {
-    std::vector<Index> quads;
-    for (Index v : vertices)
-    {
-      quads.insert(quads.end(), this->E.Around[v].begin(), this->E.Around[v].end());
-    }
-    unique(quads);
-    return quads;
-  }
-
-  static void unique(std::vector<Index>& list)
-  {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  }
-
   std::vector<Index> ring(Index v) const
   {
     std::vector<Index> around;
@@ -238,7 +221,7 @@ private:
         around.push_back(this->E.Quads[q][(k + i) % 4]);
       }
     }
-    unique(around);
+    QuadEditor::sortUnique(around);
     return around;
   }
 
@@ -297,7 +280,7 @@ private:
   Before before(const std::vector<Index>& vertices) const
   {
     Before b;
-    b.Quads = this->quadsAt(vertices);
+    b.Quads = this->E.quadsAt(vertices);
     for (Index q : b.Quads)
     {
       for (const Place& p : this->Held[q])
@@ -406,7 +389,7 @@ private:
   {
     std::vector<Index> moving(this->E.Quads[q].begin(), this->E.Quads[q].end());
     moving.insert(moving.end(), this->E.Quads[other].begin(), this->E.Quads[other].end());
-    unique(moving);
+    QuadEditor::sortUnique(moving);
     const Before b = this->before(moving);
     this->E.begin();
     View view;

@@ -220,7 +220,7 @@ protected:
         h.Samples.insert(h.Samples.end(), this->Held[q].begin(), this->Held[q].end());
       }
     }
-    unique(h.Samples);
+    QuadEditor::sortUnique(h.Samples);
     for (Index i : h.Samples)
     {
       double least = std::numeric_limits<double>::infinity();
@@ -292,25 +292,8 @@ protected:
       ends.push_back(this->E.Quads[q][(k + 1) % 4]);
       ends.push_back(this->E.Quads[q][(k + 3) % 4]);
     }
-    unique(ends);
+    QuadEditor::sortUnique(ends);
     return ends;
-  }
-
-  static void unique(std::vector<Index>& list)
-  {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  }
-
-  std::vector<Index> quadsAt(const std::vector<Index>& vertices) const
-  {
-    std::vector<Index> quads;
-    for (Index v : vertices)
-    {
-      quads.insert(quads.end(), this->E.Around[v].begin(), this->E.Around[v].end());
-    }
-    unique(quads);
-    return quads;
   }
 
   double shape(Index q) const
@@ -334,7 +317,7 @@ protected:
   void tryCollapse(const Candidate& c, double most)
   {
     std::vector<Index> ring(this->E.Quads[c.Quad].begin(), this->E.Quads[c.Quad].end());
-    const std::vector<Index> old = this->quadsAt(ring);
+    const std::vector<Index> old = this->E.quadsAt(ring);
     const Index a = ring[c.Corner];
     const Index b = ring[c.Corner + 2];
     const double side = 0.5 * (this->Side[a] + this->Side[b]);
@@ -363,8 +346,8 @@ protected:
     const Index o = this->E.neighbor(q, k);
     std::vector<Index> ring(this->E.Quads[q].begin(), this->E.Quads[q].end());
     ring.insert(ring.end(), this->E.Quads[o].begin(), this->E.Quads[o].end());
-    unique(ring);
-    const std::vector<Index> old = this->quadsAt(ring);
+    QuadEditor::sortUnique(ring);
+    const std::vector<Index> old = this->E.quadsAt(ring);
     const double before = this->worst(old);
     const double far = this->farthest(old);
     this->E.begin();
@@ -383,11 +366,11 @@ protected:
     double before, double far, double& loss)
   {
     this->addRing(vertices, center);
-    unique(vertices);
+    QuadEditor::sortUnique(vertices);
     vertices.erase(std::remove_if(vertices.begin(), vertices.end(),
                      [this](Index v) { return this->E.Around[v].empty(); }),
       vertices.end());
-    const std::vector<Index> quads = this->quadsAt(vertices);
+    const std::vector<Index> quads = this->E.quadsAt(vertices);
     const double bound = std::min(this->Least, before);
     const std::vector<Index> inner = this->joined(center);
     for (int round = 0; round < 2; ++round)

@@ -503,4 +503,21 @@ LayoutDraft QuadEditor::draft() const
   out.Creases.erase(std::unique(out.Creases.begin(), out.Creases.end()), out.Creases.end());
   return out;
 }
+
+std::vector<Index> QuadEditor::quadsAt(const std::vector<Index>& vertices) const
+{
+  std::vector<Index> quads;
+  for (const Index v : vertices)
+  {
+    quads.insert(quads.end(), this->Around[v].begin(), this->Around[v].end());
+  }
+  sortUnique(quads);
+  return quads;
+}
+
+void QuadEditor::sortUnique(std::vector<Index>& list)
+{
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
 } // namespace bsr

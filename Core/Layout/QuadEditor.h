@@ -35,6 +35,9 @@ public:
   }
   /// Corner of a quad that is v.
   int corner(Index quad, Index v) const;
+  /// Quads at any of some vertices, sorted.
+  std::vector<Index> quadsAt(const std::vector<Index>& vertices) const;
+  static void sortUnique(std::vector<Index>& list);
   /// The quad on the other side of the edge from corner k, or -1.
   Index neighbor(Index quad, int k) const;
   /// Is the edge from corner k a crease or a boundary?

@@ -49,15 +49,15 @@ private:
     const Index o = this->E.neighbor(q, k);
     std::vector<Index> hexagon(this->E.Quads[q].begin(), this->E.Quads[q].end());
     hexagon.insert(hexagon.end(), this->E.Quads[o].begin(), this->E.Quads[o].end());
-    unique(hexagon);
-    const std::vector<Index> around = this->quadsAt(hexagon);
+    QuadEditor::sortUnique(hexagon);
+    const std::vector<Index> around = this->E.quadsAt(hexagon);
     std::vector<Index> ring;
     for (Index near : around)
     {
       ring.insert(ring.end(), this->E.Quads[near].begin(), this->E.Quads[near].end());
     }
-    unique(ring);
-    const std::vector<Index> old = this->quadsAt(ring);
+    QuadEditor::sortUnique(ring);
+    const std::vector<Index> old = this->E.quadsAt(ring);
     const double before = this->worst(old);
     const double far = this->farthest(old);
     for (std::size_t i = 0; i < 2 * around.size(); ++i)

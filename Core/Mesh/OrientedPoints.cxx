@@ -15,7 +15,7 @@ namespace
 {
 constexpr std::size_t SpacingNeighbor = 6;
 constexpr double MostSpacing = 6.0; ///< of a point, in spacings of its neighbors
-constexpr int Directions = 26; ///< in which the outermost point is asked where outside is
+constexpr int Directions = 26;      ///< in which the outermost point is asked where outside is
 
 /// The points without repetitions, in their order.
 std::vector<Vec3> distinct(const std::vector<Vec3>& points)

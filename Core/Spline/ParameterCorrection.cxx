@@ -2,6 +2,7 @@
 
 #include "Common/Parallel.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace bsr
@@ -219,5 +220,19 @@ std::vector<Residual> residuals(const NetEvaluator& evaluator, const std::vector
       }
     });
   return r;
+}
+
+double weightedRms(
+  const PatchNet& net, const NetPoints& surface, const std::vector<FitPoint>& points)
+{
+  const auto r = residuals(net, surface, points);
+  double sum = 0.0;
+  double weight = 0.0;
+  for (std::size_t i = 0; i < r.size(); ++i)
+  {
+    sum += points[i].weight() * r[i].Distance * r[i].Distance;
+    weight += points[i].weight();
+  }
+  return std::sqrt(sum / std::max(weight, 1e-300));
 }
 } // namespace bsr

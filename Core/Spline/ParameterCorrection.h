@@ -38,4 +38,8 @@ struct Residual
 std::vector<Residual> residuals(
   const PatchNet& net, const NetPoints& surface, const std::vector<FitPoint>& points);
 std::vector<Residual> residuals(const NetEvaluator& surface, const std::vector<FitPoint>& points);
+
+/// Root mean square of the distances at the parameters as they are, by the points' weights.
+double weightedRms(
+  const PatchNet& net, const NetPoints& surface, const std::vector<FitPoint>& points);
 } // namespace bsr

@@ -214,20 +214,6 @@ private:
     return Status::ok();
   }
 
-  /// Root mean square of the weighted distances at the parameters as they are.
-  double rms() const
-  {
-    const auto r = residuals(this->Net, this->Surface, this->Points);
-    double sum = 0.0;
-    double weight = 0.0;
-    for (std::size_t i = 0; i < r.size(); ++i)
-    {
-      sum += this->Points[i].weight() * r[i].Distance * r[i].Distance;
-      weight += this->Points[i].weight();
-    }
-    return std::sqrt(sum / std::max(weight, 1e-300));
-  }
-
   /// Passes go on, accelerated, until they gain next to nothing: alone, parameters drift along the
   /// surface for hundreds of passes. Where patches fold in the end, the last net without folds is
   /// taken.
@@ -246,7 +232,7 @@ private:
       {
         return s;
       }
-      const double now = this->rms();
+      const double now = weightedRms(this->Net, this->Surface, this->Points);
       idle = now > (1.0 - this->Options.LeastGain) * before ? idle + 1 : 0;
       if (now > Growth * before)
       {
@@ -592,27 +578,6 @@ private:
   double PatchSize = 1.0;
 };
 } // namespace
-
-std::vector<std::array<double, 2>> patchAspects(
-  const QuadComplex& complex, const std::vector<Vec3>& v)
-{
-  std::vector<std::array<double, 2>> aspect(complex.faces());
-  double mean = 0.0;
-  for (Index f = 0; f < complex.faces(); ++f)
-  {
-    const auto& q = complex.quad(f);
-    const double a = 0.5 * ((v[q[1]] - v[q[0]]).norm() + (v[q[2]] - v[q[3]]).norm());
-    const double b = 0.5 * ((v[q[3]] - v[q[0]]).norm() + (v[q[2]] - v[q[1]]).norm());
-    aspect[f] = {a, b};
-    mean += std::sqrt(a * b) / complex.faces();
-  }
-  for (auto& [a, b] : aspect)
-  {
-    a = std::clamp(mean > 0.0 ? a / mean : 1.0, 1.0 / 3, 3.0);
-    b = std::clamp(mean > 0.0 ? b / mean : 1.0, 1.0 / 3, 3.0);
-  }
-  return aspect;
-}
 
 Result<ShellFitResult> fitShell(const ShellLayout& layout, FitSolver& solver,
   std::vector<FitPoint> points, const std::vector<RimSample>& rim, const ShellFitOptions& options,

@@ -63,8 +63,4 @@ struct ShellLayout
 Result<ShellFitResult> fitShell(const ShellLayout& layout, FitSolver& solver,
   std::vector<FitPoint> points, const std::vector<RimSample>& rim, const ShellFitOptions& options,
   Monitor& monitor);
-
-/// Side lengths of the patches along u and v in units of the mean patch size, limited to 1/3 .. 3.
-std::vector<std::array<double, 2>> patchAspects(
-  const QuadComplex& complex, const std::vector<Vec3>& vertices);
 } // namespace bsr

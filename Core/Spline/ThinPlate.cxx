@@ -2,6 +2,7 @@
 
 #include "Spline/Basis.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace bsr
@@ -76,5 +77,26 @@ PatchEnergies patchEnergies(int segmentsU, int segmentsV)
   const Gram v = gramMatrices(segmentsV);
   return {tensor(u.Second, v.Value), tensor(u.First, v.First), tensor(u.Value, v.Second),
     tensor(u.Value, v.Value)};
+}
+
+std::vector<std::array<double, 2>> patchAspects(
+  const QuadComplex& complex, const std::vector<Vec3>& v)
+{
+  std::vector<std::array<double, 2>> aspect(complex.faces());
+  double mean = 0.0;
+  for (Index f = 0; f < complex.faces(); ++f)
+  {
+    const auto& q = complex.quad(f);
+    const double a = 0.5 * ((v[q[1]] - v[q[0]]).norm() + (v[q[2]] - v[q[3]]).norm());
+    const double b = 0.5 * ((v[q[3]] - v[q[0]]).norm() + (v[q[2]] - v[q[1]]).norm());
+    aspect[f] = {a, b};
+    mean += std::sqrt(a * b) / complex.faces();
+  }
+  for (auto& [a, b] : aspect)
+  {
+    a = std::clamp(mean > 0.0 ? a / mean : 1.0, 1.0 / 3, 3.0);
+    b = std::clamp(mean > 0.0 ? b / mean : 1.0, 1.0 / 3, 3.0);
+  }
+  return aspect;
 }
 } // namespace bsr

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "Spline/QuadComplex.h"
+
 #include <Eigen/Core>
 
 namespace bsr
@@ -31,4 +33,8 @@ struct PatchEnergies
 PatchEnergies patchEnergies(int segments);
 /// The same with different numbers of segments along u and v.
 PatchEnergies patchEnergies(int segmentsU, int segmentsV);
+
+/// Side lengths of the patches along u and v in units of the mean patch size, limited to 1/3 .. 3.
+std::vector<std::array<double, 2>> patchAspects(
+  const QuadComplex& complex, const std::vector<Vec3>& vertices);
 } // namespace bsr
