@@ -82,7 +82,6 @@ def picture(proxies, up, name, folder):
     view.CameraFocalPoint = [0, 0, 0]
     view.CameraViewUp = [1 if i == up else 0 for i in range(3)]
     view.ResetCamera()
-    view.GetActiveCamera().Zoom(1.3)
     pv.SaveScreenshot(os.path.join(folder, name + ".png"), view, ImageResolution=[1400, 1000])
 
 
@@ -101,10 +100,12 @@ def main():
     table = sm.Fetch(skin, idx=2)
     for r in range(table.GetNumberOfRows()):
         row = {table.GetColumnName(c): table.GetValue(r, c).ToDouble() for c in range(table.GetNumberOfColumns())}
-        print("surface %d: %d contours, %d x %d control points, %d patch(es), RMS %.4g, average error %.4g, "
-              "resliced %.4g (RMS), second derivatives jump by %.1e" %
-              (r, row["Contours"], row["ControlPointsU"], row["ControlPointsV"], row["Patches"], row["RMS"],
-               row["AverageError"], row["ResliceRMS"], row["SecondDerivativeJump"]))
+        net = ("%d x %d control points" % (row["ControlPointsU"], row["ControlPointsV"]) if row["ControlPointsU"]
+               else "tubes and junctions")
+        print("surface %d: %d contours, %s, %d patch(es), RMS %.4g, average error %.4g, resliced %.4g (RMS), "
+              "second derivatives jump by %.1e" %
+              (r, row["Contours"], net, row["Patches"], row["RMS"], row["AverageError"], row["ResliceRMS"],
+               row["SecondDerivativeJump"]))
     message = model.GetFieldData().GetAbstractArray("Message").GetValue(0)
     if message:
         print(message)
