@@ -101,8 +101,8 @@ void PatchImprover::prepare(int segmentsU, int segmentsV)
   }
 }
 
-void PatchImprover::improve(int sweep, Index p, RationalPatch& patch, FitPoint* first,
-  FitPoint* last, PatchGain& gain, std::vector<double>& history) const
+void PatchImprover::improve(WeightOptimizer how, int sweep, Index p, RationalPatch& patch,
+  FitPoint* first, FitPoint* last, PatchGain& gain, std::vector<double>& history) const
 {
   if (sweep == 0)
   {
@@ -112,15 +112,14 @@ void PatchImprover::improve(int sweep, Index p, RationalPatch& patch, FitPoint* 
   const RationalPatch base = patch;
   RationalPatch trial = patch;
   std::vector<FitPoint> points(first, last);
-  const WeightOptimizer how = this->Options.Optimizer;
   const int rounds = sweep == 0 ? Rounds : 1;
   for (int round = 0; round < rounds && how != WeightOptimizer::None; ++round)
   {
     const WeightProblem problem(trial, points.data(), points.data() + points.size(),
       FreeControlPoints::Interior, this->objective(p, trial));
+    const Eigen::VectorXd start = problem.weightsOf(trial);
     WeightProblem::State state;
-    if (problem.points() < 2 * problem.variables() ||
-        !problem.solve(problem.weightsOf(trial), state))
+    if (problem.points() < 2 * problem.variables() || !problem.solve(start, state))
     {
       break;
     }
@@ -132,9 +131,27 @@ void PatchImprover::improve(int sweep, Index p, RationalPatch& patch, FitPoint* 
     {
       history = this->evolveWeights(p, problem, state, gain);
     }
+    const std::vector<FitPoint> before = points;
+    const Eigen::VectorXd found = problem.weightsOf(state.Patch);
+    bool kept = this->tryPatch(base, state.Patch, points, patch, first, gain);
     trial = state.Patch;
-    correctOnPatch(trial, points.data(), points.data() + points.size(), CorrectionSteps);
-    this->keepIfBetter(base, trial, points, patch, first, gain);
+    // Weights that fold a patch, or fit it worse at the true feet, are taken back by halves.
+    for (double share = 0.5; !kept && how == WeightOptimizer::Deterministic && share > 0.1;
+         share *= 0.5)
+    {
+      const Eigen::VectorXd weights =
+        (start.array().pow(1.0 - share) * found.array().pow(share)).matrix();
+      std::vector<FitPoint> moved = before;
+      if (problem.solve(weights, state))
+      {
+        kept = this->tryPatch(base, state.Patch, moved, patch, first, gain);
+      }
+      if (kept)
+      {
+        trial = state.Patch;
+        points = std::move(moved);
+      }
+    }
   }
   for (const Vec4& c : patch.ControlPoints)
   {
@@ -159,8 +176,7 @@ void PatchImprover::refit(
       break;
     }
     trial = state.Patch;
-    correctOnPatch(trial, points.data(), points.data() + points.size(), CorrectionSteps);
-    this->keepIfBetter(base, trial, points, patch, first, gain);
+    this->tryPatch(base, trial, points, patch, first, gain);
   }
 }
 
@@ -241,17 +257,18 @@ std::vector<double> PatchImprover::evolveWeights(
   return e.History;
 }
 
-void PatchImprover::keepIfBetter(const RationalPatch& base, const RationalPatch& trial,
-  const std::vector<FitPoint>& points, RationalPatch& patch, FitPoint* first, PatchGain& gain) const
+bool PatchImprover::tryPatch(const RationalPatch& base, const RationalPatch& trial,
+  std::vector<FitPoint>& points, RationalPatch& patch, FitPoint* first, PatchGain& gain) const
 {
+  correctOnPatch(trial, points.data(), points.data() + points.size(), CorrectionSteps);
   const double mean = meanDistance(trial, points.data(), points.data() + points.size());
-  const bool shifted =
-    this->Shell.RestShape && largestShift(base, trial) > 0.5 * this->Shell.LeastWall;
-  if (mean < gain.MeanAfter && !shifted && !checkShape(trial).Folded)
+  if (!(mean < gain.MeanAfter) || !this->allowed(base, trial))
   {
-    gain.MeanAfter = mean;
-    patch = trial;
-    std::copy(points.begin(), points.end(), first);
+    return false;
   }
+  gain.MeanAfter = mean;
+  patch = trial;
+  std::copy(points.begin(), points.end(), first);
+  return true;
 }
 } // namespace bsr

@@ -20,8 +20,8 @@ public:
 
   /// Optimizes the weights (and the parameters) of a patch; unchanged where nothing is gained. The
   /// evolution strategy runs in the first sweep only and gives its history.
-  void improve(int sweep, Index p, RationalPatch& patch, FitPoint* first, FitPoint* last,
-    PatchGain& gain, std::vector<double>& history) const;
+  void improve(WeightOptimizer how, int sweep, Index p, RationalPatch& patch, FitPoint* first,
+    FitPoint* last, PatchGain& gain, std::vector<double>& history) const;
 
   /// Fits the interior of a patch again, with its weights; unchanged where nothing is gained.
   void refit(Index p, RationalPatch& patch, FitPoint* first, FitPoint* last, PatchGain& gain) const;
@@ -37,9 +37,9 @@ private:
   PatchObjective objective(Index p, const RationalPatch& patch) const;
   std::vector<double> evolveWeights(
     Index p, const WeightProblem& problem, WeightProblem::State& state, PatchGain& gain) const;
-  void keepIfBetter(const RationalPatch& base, const RationalPatch& trial,
-    const std::vector<FitPoint>& points, RationalPatch& patch, FitPoint* first,
-    PatchGain& gain) const;
+  /// Corrects the parameters on a trial and takes both over where they are better; else false.
+  bool tryPatch(const RationalPatch& base, const RationalPatch& trial,
+    std::vector<FitPoint>& points, RationalPatch& patch, FitPoint* first, PatchGain& gain) const;
 
   const PatchNet& Net;
   const ShellFitOptions& Shell;

@@ -146,6 +146,35 @@ Result<bool> joinAgain(const ShellLayout& layout, const PatchImprover& stage, Fi
   }
   return false;
 }
+
+/// Sweeps over the patches and joins in turn, until next to nothing is gained. `done`: sweeps.
+template <class Sweep, class Join>
+Status alternate(
+  WeightOptimizer how, const Sweep& sweep, const Join& join, int& done, Monitor& monitor)
+{
+  for (int i = 0; i < Sweeps; ++i)
+  {
+    SubMonitor part(monitor, static_cast<double>(i) / Sweeps, (i + 1.0) / Sweeps);
+    if (Status s = sweep(done++, part); !s)
+    {
+      return s;
+    }
+    if (how == WeightOptimizer::None || i + 1 == Sweeps)
+    {
+      break;
+    }
+    const auto gained = join();
+    if (!gained)
+    {
+      return gained.status();
+    }
+    if (!*gained)
+    {
+      break;
+    }
+  }
+  return Status::ok();
+}
 } // namespace
 
 Result<RationalShell> optimizeWeights(const ShellLayout& layout, FitSolver& solver,
@@ -166,32 +195,31 @@ Result<RationalShell> optimizeWeights(const ShellLayout& layout, FitSolver& solv
   {
     out.Patches[p] = ownPatch(net, fit.Net, p);
   }
-  for (int sweep = 0; sweep < Sweeps; ++sweep)
+  // Weights are looked for about the best control points: alone, those of a poor fit lead astray.
+  std::vector<WeightOptimizer> phases(1, options.Optimizer);
+  if (options.Optimizer == WeightOptimizer::Deterministic)
   {
-    SubMonitor part(monitor, static_cast<double>(sweep) / Sweeps, (sweep + 1.0) / Sweeps);
-    Status status = forPatches(net.patches(), part,
-      [&](Index p)
-      {
-        FitPoint* points = out.Points.data();
-        stage.improve(sweep, p, out.Patches[p], points + first[p], points + first[p + 1],
-          out.Gains[p], histories[p]);
-      });
-    if (!status)
+    phases.insert(phases.begin(), WeightOptimizer::ControlPoints);
+  }
+  int done = 0;
+  for (std::size_t phase = 0; phase < phases.size(); ++phase)
+  {
+    const double share = 1.0 / static_cast<double>(phases.size());
+    SubMonitor part(monitor, share * static_cast<double>(phase), share * (phase + 1.0));
+    const auto sweep = [&](int number, Monitor& watch)
     {
-      return status;
-    }
-    if (options.Optimizer == WeightOptimizer::None || sweep + 1 == Sweeps)
+      return forPatches(net.patches(), watch,
+        [&](Index p)
+        {
+          FitPoint* points = out.Points.data();
+          stage.improve(phases[phase], number, p, out.Patches[p], points + first[p],
+            points + first[p + 1], out.Gains[p], histories[p]);
+        });
+    };
+    const auto join = [&] { return joinAgain(layout, stage, solver, out, first); };
+    if (Status s = alternate(phases[phase], sweep, join, done, part); !s)
     {
-      break;
-    }
-    const auto gained = joinAgain(layout, stage, solver, out, first);
-    if (!gained)
-    {
-      return gained.status();
-    }
-    if (!*gained)
-    {
-      break;
+      return s;
     }
   }
   out.History = meanHistory(histories);
