@@ -508,6 +508,10 @@ Result<ContourSkinResult> skinContours(
     return s;
   }
   monitor.progress(1.0);
+  if (monitor.cancelled())
+  {
+    return Status::cancelled(); // said at the last step
+  }
   return result;
 }
 } // namespace bsr
