@@ -1,6 +1,7 @@
 // Numbers of quads: shares of components, and layouts at the limit of their topology.
 #include "Layout/ComponentShares.h"
 #include "Layout/QuadRemesh.h"
+#include "LayoutTesting.h"
 
 #include <gtest/gtest.h>
 
@@ -9,19 +10,10 @@
 #include <numeric>
 
 using namespace bsr;
+using bsrtest::remeshed;
 
 namespace
 {
-QuadLayout remeshed(const TriangleMesh& mesh, int quads)
-{
-  QuadRemeshOptions options;
-  options.NumberOfQuads = quads;
-  Monitor monitor;
-  auto layout = quadRemesh(mesh, options, monitor);
-  EXPECT_TRUE(layout) << layout.status().message();
-  return layout ? *layout : QuadLayout{};
-}
-
 /// A wavy disc of 2 n n triangles around `middle`.
 void addDisc(TriangleMesh& mesh, int n, const Vec3& middle, double size)
 {

@@ -1,5 +1,6 @@
 #include "Layout/Attraction.h"
 #include "Layout/QuadRemesh.h"
+#include "LayoutTesting.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -12,6 +13,7 @@
 namespace
 {
 using namespace bsr;
+using bsrtest::remeshed;
 
 /// A torus (open: a tube with two boundary loops) of 2 n m triangles.
 TriangleMesh ring(int n, int m, bool closed)
@@ -67,16 +69,6 @@ TriangleMesh cappedTube(int n, int m, bool regions)
     mesh.Region.clear();
   }
   return mesh;
-}
-
-QuadLayout remeshed(const TriangleMesh& mesh, int quads)
-{
-  QuadRemeshOptions options;
-  options.NumberOfQuads = quads;
-  Monitor monitor;
-  auto layout = quadRemesh(mesh, options, monitor);
-  EXPECT_TRUE(layout) << layout.status().message();
-  return layout ? *layout : QuadLayout{};
 }
 
 Status failure(const TriangleMesh& mesh, const QuadRemeshOptions& options = {})

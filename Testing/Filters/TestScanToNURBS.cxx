@@ -38,8 +38,12 @@ vtkIdType openEdges(vtkPolyData* p)
   return edges->GetOutput()->GetNumberOfCells();
 }
 
-void expectModel(vtkScanToNURBS* filter, double rms, double euler)
+/// `rms`: bound, over the scan's diagonal.
+void updateAndExpectModel(vtkScanToNURBS* filter, double rms, double euler)
 {
+  ErrorLog log(filter);
+  filter->Update();
+  EXPECT_TRUE(log.empty()) << log.text();
   auto* report = vtkTable::SafeDownCast(filter->GetOutputDataObject(vtkScanToNURBS::REPORT));
   ASSERT_GT(report->GetNumberOfRows(), 0);
   EXPECT_LT(bsrtest::fieldValue(report, "RelativeRMS"), rms);
@@ -57,10 +61,7 @@ TEST(ScanToNURBSFilter, ClosesGapsAndGivesEveryStage)
   vtkNew<vtkScanToNURBS> filter;
   filter->SetInputDataObject(0, scan(12.0));
   filter->SetNumberOfQuads(30);
-  ErrorLog log(filter);
-  filter->Update();
-  EXPECT_TRUE(log.empty()) << log.text();
-  expectModel(filter, 1e-3, 2.0);
+  updateAndExpectModel(filter, 1e-3, 2.0);
   const auto output = [&](int port)
   { return vtkPolyData::SafeDownCast(filter->GetOutputDataObject(port)); };
   EXPECT_EQ(openEdges(output(vtkScanToNURBS::MODEL)), 0);
@@ -75,10 +76,7 @@ TEST(ScanToNURBSFilter, KeepsAnOpenBoundary)
   vtkNew<vtkScanToNURBS> filter;
   filter->SetInputDataObject(0, scan(70.0));
   filter->SetNumberOfQuads(30);
-  ErrorLog log(filter);
-  filter->Update();
-  EXPECT_TRUE(log.empty()) << log.text();
-  expectModel(filter, 1e-3, 1.0);
+  updateAndExpectModel(filter, 1e-3, 1.0);
   auto* model = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(vtkScanToNURBS::MODEL));
   EXPECT_GT(openEdges(model), 0);
   // The model ends where the scan does.
@@ -92,10 +90,7 @@ TEST(ScanToNURBSFilter, TakesPointsWithoutTriangles)
   vtkNew<vtkScanToNURBS> filter;
   filter->SetInputDataObject(0, points);
   filter->SetNumberOfQuads(30);
-  ErrorLog log(filter);
-  filter->Update();
-  EXPECT_TRUE(log.empty()) << log.text();
-  expectModel(filter, 2e-3, 2.0);
+  updateAndExpectModel(filter, 2e-3, 2.0);
 }
 
 TEST(ScanToNURBSFilter, ARimOfPointsIsHeld)
@@ -107,10 +102,7 @@ TEST(ScanToNURBSFilter, ARimOfPointsIsHeld)
   vtkNew<vtkScanToNURBS> filter;
   filter->SetInputDataObject(0, points);
   filter->SetNumberOfQuads(30);
-  ErrorLog log(filter);
-  filter->Update();
-  EXPECT_TRUE(log.empty()) << log.text();
-  expectModel(filter, 2e-3, 1.0);
+  updateAndExpectModel(filter, 2e-3, 1.0);
   auto* model = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(vtkScanToNURBS::MODEL));
   EXPECT_GT(openEdges(model), 0);
   // Half a sample (0.13 along the rim) beyond the points at most.
@@ -128,10 +120,7 @@ TEST(ScanToNURBSFilter, LeavesSpecksOut)
   vtkNew<vtkScanToNURBS> filter;
   filter->SetInputConnection(both->GetOutputPort());
   filter->SetNumberOfQuads(30);
-  ErrorLog log(filter);
-  filter->Update();
-  EXPECT_TRUE(log.empty()) << log.text();
-  expectModel(filter, 1e-3, 2.0);
+  updateAndExpectModel(filter, 1e-3, 2.0);
   EXPECT_EQ(
     bsrtest::fieldValue(filter->GetOutputDataObject(vtkScanToNURBS::REPORT), "DroppedParts"), 1.0);
 }
@@ -161,10 +150,7 @@ TEST(ScanToNURBSFilter, TakesMoreQuadsWhereTooFewWereAskedFor)
   vtkNew<vtkScanToNURBS> filter;
   filter->SetInputConnection(surface->GetOutputPort());
   filter->SetNumberOfQuads(10);
-  ErrorLog log(filter);
-  filter->Update();
-  EXPECT_TRUE(log.empty()) << log.text();
-  expectModel(filter, 2e-2, -2.0);
+  updateAndExpectModel(filter, 2e-2, -2.0);
   auto* report = filter->GetOutputDataObject(vtkScanToNURBS::REPORT);
   EXPECT_EQ(bsrtest::fieldValue(report, "FailedQuads"), 0.0);
   EXPECT_GE(bsrtest::fieldValue(report, "MoreQuadsRounds"), 1.0);
@@ -183,10 +169,7 @@ TEST(ScanToNURBSFilter, DisconnectedScansBecomeAShellEach)
   vtkNew<vtkScanToNURBS> filter;
   filter->SetInputConnection(both->GetOutputPort());
   filter->SetNumberOfQuads(60);
-  ErrorLog log(filter);
-  filter->Update();
-  EXPECT_TRUE(log.empty()) << log.text();
-  expectModel(filter, 1e-3, 4.0);
+  updateAndExpectModel(filter, 1e-3, 4.0);
   EXPECT_EQ(
     openEdges(vtkPolyData::SafeDownCast(filter->GetOutputDataObject(vtkScanToNURBS::MODEL))), 0);
 }
@@ -210,10 +193,7 @@ TEST(ScanToNURBSFilter, NonManifoldVerticesAreTakenApart)
   vtkNew<vtkScanToNURBS> filter;
   filter->SetInputConnection(pinched->GetOutputPort());
   filter->SetNumberOfQuads(60);
-  ErrorLog log(filter);
-  filter->Update();
-  EXPECT_TRUE(log.empty()) << log.text();
-  expectModel(filter, 1e-3, 4.0);
+  updateAndExpectModel(filter, 1e-3, 4.0);
 }
 
 TEST(ScanToNURBSFilter, HolesThatAreTooLargeStay)
@@ -222,10 +202,7 @@ TEST(ScanToNURBSFilter, HolesThatAreTooLargeStay)
   filter->SetInputDataObject(0, scan(20.0));
   filter->SetNumberOfQuads(30);
   filter->SetMaximumHoleSize(0.05);
-  ErrorLog log(filter);
-  filter->Update();
-  EXPECT_TRUE(log.empty()) << log.text();
-  expectModel(filter, 1e-3, 1.0);
+  updateAndExpectModel(filter, 1e-3, 1.0);
   EXPECT_EQ(
     bsrtest::fieldValue(filter->GetOutputDataObject(vtkScanToNURBS::REPORT), "LeftHoles"), 1.0);
 }
@@ -236,10 +213,7 @@ TEST(ScanToNURBSFilter, AnUnreachableToleranceIsABestEffort)
   filter->SetInputDataObject(0, scan(0.0));
   filter->SetNumberOfQuads(24);
   filter->SetTolerance(1e-12);
-  ErrorLog log(filter);
-  filter->Update();
-  EXPECT_TRUE(log.empty()) << log.text();
-  expectModel(filter, 1e-3, 2.0);
+  updateAndExpectModel(filter, 1e-3, 2.0);
   auto* report = vtkTable::SafeDownCast(filter->GetOutputDataObject(vtkScanToNURBS::REPORT));
   EXPECT_EQ(bsrtest::fieldValue(report, "PatchesAboveTolerance"),
     static_cast<double>(report->GetNumberOfRows()));
