@@ -1,6 +1,7 @@
 #include "vtkFiberReconstruction.h"
 
 #include "Adapters/BSRImageAdapter.h"
+#include "Adapters/BSRMonitor.h"
 #include "Adapters/BSRStageRunner.h"
 #include "Layout/QuadRemesh.h"
 #include "Spline/G1Fit.h"
@@ -30,17 +31,6 @@ vtkStandardNewMacro(vtkFiberReconstruction);
 
 namespace
 {
-void copyField(vtkFieldData* from, vtkFieldData* to, std::initializer_list<const char*> names)
-{
-  for (const char* name : names)
-  {
-    if (vtkAbstractArray* a = from->GetAbstractArray(name))
-    {
-      to->AddArray(a);
-    }
-  }
-}
-
 /// Replaces a value of the array Side, e.g. by 255: neither wall.
 void relabelSide(vtkPolyData* surface, unsigned char from, unsigned char to)
 {
@@ -107,6 +97,130 @@ vtkTypeBool vtkFiberReconstruction::ProcessRequest(
   return this->Superclass::ProcessRequest(request, input, output);
 }
 
+/// The stages, kept so that their results can be given out.
+struct vtkFiberReconstruction::Stages
+{
+  Stages(vtkFiberReconstruction* self, vtkImageData* image, vtkInformation* array)
+      : Self(self), Open(self->OpenEnds == 0), Run(self, 100.0)
+  {
+    this->Closing->SetInputData(image);
+    this->Closing->SetInputArrayToProcess(0, array);
+    this->Closing->SetIsoValue(self->IsoValue);
+    this->Closing->SetAutoIsoValue(self->AutoIsoValue);
+    this->Closing->SetRadius(self->Radius);
+    this->Closing->SetAutoRadius(self->AutoRadius);
+    this->ClosedSurface->SetInputConnection(this->Closing->GetOutputPort());
+    this->ClosedSurface->SetInputArrayToProcess(
+      0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "SignedDistance");
+    this->ClosedSurface->SetValue(0, 0.0);
+    this->ClosedSurface->ComputeScalarsOff();
+    this->RawSurface->SetInputData(image);
+    this->RawSurface->SetInputArrayToProcess(0, array);
+    this->RawSurface->ComputeScalarsOff();
+    this->Classify->SetInputConnection(0, this->RawSurface->GetOutputPort());
+    this->Classify->SetInputConnection(1, this->Closing->GetOutputPort());
+  }
+
+  /// The closed and the raw surface, the walls told apart.
+  bool surfaces()
+  {
+    if (!this->Run.run("Closing", this->Closing, 25.0))
+    {
+      return false;
+    }
+    vtkFieldData* numbers = this->Closing->GetOutput()->GetFieldData();
+    this->RawSurface->SetValue(0, numbers->GetArray("IsoValue")->GetComponent(0, 0));
+    return this->Run.run("Closed surface", this->ClosedSurface, 2.0) &&
+           this->Run.run("Raw surface", this->RawSurface, 3.0) &&
+           this->Run.run("EDTClassify", this->Classify, 15.0);
+  }
+
+  /// The quads, with borders at the open ends.
+  bool layout()
+  {
+    this->Remesh->SetNumberOfQuads(this->Self->NumberOfQuads);
+    // A fit through both walls is not helped by a layout that follows the outer.
+    this->Remesh->FitRelaxationOff();
+    this->Remesh->SetInputConnection(this->ClosedSurface->GetOutputPort());
+    if (this->Open)
+    {
+      this->Ends->SetInputConnection(0, this->ClosedSurface->GetOutputPort());
+      this->Ends->SetInputConnection(1, this->Classify->GetOutputPort());
+      this->Remesh->SetInputConnection(this->Ends->GetOutputPort());
+      if (!this->Run.run("FiberEnds", this->Ends, 5.0))
+      {
+        return false;
+      }
+    }
+    return this->Run.run("QuadRemesh", this->Remesh, 20.0);
+  }
+
+  /// The patches of the walls asked for.
+  bool model()
+  {
+    vtkNew<vtkPolyData> sides;
+    sides->ShallowCopy(this->Classify->GetOutput());
+    if (this->Self->Sides != BOTH)
+    {
+      relabelSide(sides, this->Self->Sides == OUTER_ONLY ? 1 : 0, 255);
+    }
+    this->Partition->SetInputData(0, sides);
+    this->Partition->SetInputConnection(1, this->Remesh->GetOutputPort());
+    if (!this->Run.run("PartitionToQuads", this->Partition, 5.0))
+    {
+      return false;
+    }
+    vtkNew<vtkPolyData> partitioned;
+    partitioned->ShallowCopy(this->Partition->GetOutputDataObject(0));
+    if (this->Self->Sides == INNER_ONLY)
+    {
+      relabelSide(partitioned, 1, 0); // the one shell of a fit is its outer one
+    }
+    this->Fit->SetInputData(0, partitioned);
+    this->Fit->SetInputConnection(1, this->Remesh->GetOutputPort());
+    if (this->Open)
+    {
+      this->Fit->SetInputConnection(2, this->Ends->GetOutputPort(1));
+    }
+    this->Fit->SetContinuity(this->Self->Continuity);
+    this->Fit->SetSegmentsPerSide(this->Self->SegmentsPerSide);
+    this->Fit->SetOpenEnds(this->Self->OpenEnds);
+    this->Fit->SetResolution(this->Self->Resolution);
+    return this->Run.run("BSplineG1Fit", this->Fit, 25.0);
+  }
+
+  void giveOut(vtkInformationVector* outputs)
+  {
+    for (int port = 0; port < 3; ++port)
+    {
+      vtkDataObject::GetData(outputs, port)->ShallowCopy(this->Fit->GetOutputDataObject(port));
+    }
+    vtkDataObject* closed =
+      this->Open ? this->Ends->GetOutputDataObject(0) : this->ClosedSurface->GetOutput();
+    vtkPolyData::GetData(outputs, CLOSED_SURFACE)->ShallowCopy(closed);
+    vtkPolyData::GetData(outputs, LAYOUT)->ShallowCopy(this->Remesh->GetOutput());
+    vtkPolyData::GetData(outputs, RAW_SURFACE)
+      ->ShallowCopy(this->Partition->GetOutputDataObject(0));
+    vtkFieldData* report = vtkTable::GetData(outputs, REPORT)->GetFieldData();
+    this->Run.addTimes(report);
+    bsr::copyFields(
+      this->Closing->GetOutput(), report, {"IsoValue", "ClosingRadius", "BettiNumbers"});
+    bsr::copyFields(closed, report, {"OpenEnds", "EndsNote"});
+  }
+
+  vtkFiberReconstruction* Self;
+  bool Open; ///< ends are looked for
+  bsr::StageRunner Run;
+  vtkNew<vtkClosing> Closing;
+  vtkNew<vtkFlyingEdges3D> ClosedSurface;
+  vtkNew<vtkFlyingEdges3D> RawSurface;
+  vtkNew<vtkEDTClassify> Classify;
+  vtkNew<vtkFiberEnds> Ends;
+  vtkNew<vtkQuadRemesh> Remesh;
+  vtkNew<vtkPartitionToQuads> Partition;
+  vtkNew<vtkBSplineG1Fit> Fit;
+};
+
 int vtkFiberReconstruction::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -117,144 +231,21 @@ int vtkFiberReconstruction::RequestData(
     this->SetInputArrayToProcess(
       0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
   }
-  vtkInformation* array = this->GetInputArrayInformation(0);
-  bsr::StageRunner stages(this, 100.0);
-  const auto refuse = [&](const std::string& message)
+  const auto fail = [&](const bsr::Status& status)
   {
-    for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
-    {
-      vtkDataObject::GetData(outputs, port)->Initialize();
-    }
-    if (message.empty())
-    {
-      return 1; // cancelled
-    }
-    vtkErrorMacro(<< message);
-    return 0;
+    bsr::emptyOutputs(outputs);
+    return bsr::notDelivered(this, status);
   };
-  const auto fail = [&]()
-  { return refuse(stages.message().empty() ? "" : stages.stage() + ": " + stages.message()); };
   if (const bsr::Status s = checkParameters(*this); !s)
   {
-    return refuse(s.message());
+    return fail(s);
   }
-
-  vtkNew<vtkClosing> closing;
-  closing->SetInputData(image);
-  closing->SetInputArrayToProcess(0, array);
-  closing->SetIsoValue(this->IsoValue);
-  closing->SetAutoIsoValue(this->AutoIsoValue);
-  closing->SetRadius(this->Radius);
-  closing->SetAutoRadius(this->AutoRadius);
-  if (!stages.run("Closing", closing, 25.0))
+  Stages stages(this, image, this->GetInputArrayInformation(0));
+  if (!stages.surfaces() || !stages.layout() || !stages.model())
   {
-    return fail();
+    return fail(stages.Run.status());
   }
-  vtkFieldData* closingNumbers = closing->GetOutput()->GetFieldData();
-
-  vtkNew<vtkFlyingEdges3D> closedSurface;
-  closedSurface->SetInputConnection(closing->GetOutputPort());
-  closedSurface->SetInputArrayToProcess(
-    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "SignedDistance");
-  closedSurface->SetValue(0, 0.0);
-  closedSurface->ComputeScalarsOff();
-  vtkNew<vtkFlyingEdges3D> rawSurface;
-  rawSurface->SetInputData(image);
-  rawSurface->SetInputArrayToProcess(0, array);
-  rawSurface->SetValue(0, closingNumbers->GetArray("IsoValue")->GetComponent(0, 0));
-  rawSurface->ComputeScalarsOff();
-  if (!stages.run("Closed surface", closedSurface, 2.0) ||
-      !stages.run("Raw surface", rawSurface, 3.0))
-  {
-    return fail();
-  }
-
-  vtkNew<vtkEDTClassify> classify;
-  classify->SetInputConnection(0, rawSurface->GetOutputPort());
-  classify->SetInputConnection(1, closing->GetOutputPort());
-  if (!stages.run("EDTClassify", classify, 15.0))
-  {
-    return fail();
-  }
-  vtkNew<vtkPolyData> classified;
-  classified->ShallowCopy(classify->GetOutput());
-  vtkNew<vtkPolyData> sides;
-  sides->ShallowCopy(classified);
-  if (this->Sides != BOTH)
-  {
-    relabelSide(sides, this->Sides == OUTER_ONLY ? 1 : 0, 255);
-  }
-
-  vtkNew<vtkFiberEnds> ends;
-  ends->SetInputConnection(0, closedSurface->GetOutputPort());
-  ends->SetInputData(1, classified);
-  vtkNew<vtkQuadRemesh> remesh;
-  remesh->SetNumberOfQuads(this->NumberOfQuads);
-  remesh
-    ->FitRelaxationOff(); // a fit through both walls is not helped by one that follows the outer
-  if (this->OpenEnds == 0)
-  {
-    if (!stages.run("FiberEnds", ends, 5.0))
-    {
-      return fail();
-    }
-    remesh->SetInputConnection(ends->GetOutputPort());
-  }
-  else
-  {
-    remesh->SetInputConnection(closedSurface->GetOutputPort());
-  }
-  if (!stages.run("QuadRemesh", remesh, 20.0))
-  {
-    return fail();
-  }
-
-  vtkNew<vtkPartitionToQuads> partition;
-  partition->SetInputData(0, sides);
-  partition->SetInputConnection(1, remesh->GetOutputPort());
-  if (!stages.run("PartitionToQuads", partition, 5.0))
-  {
-    return fail();
-  }
-
-  vtkNew<vtkPolyData> partitioned;
-  partitioned->ShallowCopy(partition->GetOutputDataObject(0));
-  if (this->Sides == INNER_ONLY)
-  {
-    relabelSide(partitioned, 1, 0); // the one shell of a fit is its outer one
-  }
-  vtkNew<vtkBSplineG1Fit> fit;
-  fit->SetInputData(0, partitioned);
-  fit->SetInputConnection(1, remesh->GetOutputPort());
-  if (this->OpenEnds == 0)
-  {
-    fit->SetInputConnection(2, ends->GetOutputPort(1));
-  }
-  fit->SetContinuity(this->Continuity);
-  fit->SetSegmentsPerSide(this->SegmentsPerSide);
-  fit->SetOpenEnds(this->OpenEnds);
-  fit->SetResolution(this->Resolution);
-  if (!stages.run("BSplineG1Fit", fit, 25.0))
-  {
-    return fail();
-  }
-
-  for (int port = 0; port < 3; ++port)
-  {
-    vtkDataObject::GetData(outputs, port)->ShallowCopy(fit->GetOutputDataObject(port));
-  }
-  vtkPolyData::GetData(outputs, CLOSED_SURFACE)
-    ->ShallowCopy(this->OpenEnds == 0 ? ends->GetOutputDataObject(0) : closedSurface->GetOutput());
-  vtkPolyData::GetData(outputs, LAYOUT)->ShallowCopy(remesh->GetOutput());
-  vtkPolyData::GetData(outputs, RAW_SURFACE)->ShallowCopy(partition->GetOutputDataObject(0));
-
-  vtkFieldData* report = vtkTable::GetData(outputs, REPORT)->GetFieldData();
-  stages.addTimes(report);
-  copyField(closingNumbers, report, {"IsoValue", "ClosingRadius", "BettiNumbers"});
-  if (this->OpenEnds == 0)
-  {
-    copyField(ends->GetOutputDataObject(0)->GetFieldData(), report, {"OpenEnds", "EndsNote"});
-  }
+  stages.giveOut(outputs);
   return 1;
 }
 

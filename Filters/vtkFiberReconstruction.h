@@ -144,6 +144,8 @@ protected:
   int Resolution = 4;
 
 private:
+  struct Stages;
+
   vtkFiberReconstruction(const vtkFiberReconstruction&) = delete;
   void operator=(const vtkFiberReconstruction&) = delete;
 };

@@ -1,6 +1,7 @@
 #include "vtkScanToNURBS.h"
 
 #include "Adapters/BSRMeshAdapter.h"
+#include "Adapters/BSRMonitor.h"
 #include "Adapters/BSRStageRunner.h"
 #include "Layout/QuadRemesh.h"
 #include "vtkBSplineG1Fit.h"
@@ -172,17 +173,6 @@ vtkSmartPointer<vtkPolyData> withRim(vtkPolyData* cloud, vtkPolyData* mesh)
   return out;
 }
 
-void copyFields(vtkDataObject* from, vtkFieldData* to, std::initializer_list<const char*> names)
-{
-  for (const char* name : names)
-  {
-    if (vtkAbstractArray* a = from->GetFieldData()->GetAbstractArray(name))
-    {
-      to->AddArray(a);
-    }
-  }
-}
-
 /// Of the layout: nobody shall wait for the holes to be filled to be told of them.
 bsr::Status checkParameters(vtkScanToNURBS& filter)
 {
@@ -342,10 +332,11 @@ struct vtkScanToNURBS::Stages
     vtkPolyData::GetData(outputs, NETWORK)->ShallowCopy(this->Partition->GetOutputDataObject(1));
     vtkFieldData* report = vtkTable::GetData(outputs, REPORT)->GetFieldData();
     this->Run.addTimes(report);
-    copyFields(
+    bsr::copyFields(
       this->Fill->GetOutput(), report, {"FilledHoles", "LeftHoles", "HoleSize", "HoleState"});
-    copyFields(this->Remesh->GetOutput(), report, {"Irregular", "EulerCharacteristic"});
-    copyFields(parameters, report, {"FailedQuads", "RoughSides", "Detours", "FoldedTriangles"});
+    bsr::copyFields(this->Remesh->GetOutput(), report, {"Irregular", "EulerCharacteristic"});
+    bsr::copyFields(
+      parameters, report, {"FailedQuads", "RoughSides", "Detours", "FoldedTriangles"});
     const double diagonal = this->Scan->GetLength();
     bsr::addField(report, "DroppedParts", this->Specks);
     bsr::addField(report, "MoreQuadsRounds", this->Rounds);
@@ -373,34 +364,29 @@ int vtkScanToNURBS::RequestData(
 {
   vtkNew<vtkPolyData> scan;
   scan->ShallowCopy(vtkPolyData::GetData(inputs[0]));
-  const auto fail = [&](const std::string& message)
+  const auto fail = [&](const bsr::Status& status)
   {
-    for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
-    {
-      vtkDataObject::GetData(outputs, port)->Initialize();
-    }
-    if (message.empty())
-    {
-      return 1; // cancelled
-    }
-    vtkErrorMacro(<< message);
-    return 0;
+    bsr::emptyOutputs(outputs);
+    return bsr::notDelivered(this, status);
   };
   const auto checked = bsr::pointsFrom(scan->GetPoints());
-  if (!checked || checked->size() < 8)
+  if (!checked)
   {
-    return fail(checked ? "The input has fewer than 8 points; check the filters above."
-                        : checked.status().message());
+    return fail(checked.status());
+  }
+  if (checked->size() < 8)
+  {
+    return fail(
+      bsr::Status::invalidInput("The input has fewer than 8 points; check the filters above."));
   }
   if (const bsr::Status s = checkParameters(*this); !s)
   {
-    return fail(s.message());
+    return fail(s);
   }
   Stages stages(this, scan);
   if (!stages.close() || !stages.model())
   {
-    const std::string why = stages.Run.message();
-    return fail(why.empty() ? why : stages.Run.stage() + ": " + why);
+    return fail(stages.Run.status());
   }
   stages.giveOut(outputs);
   return 1;

@@ -2,9 +2,11 @@
 
 #include <vtkAlgorithm.h>
 #include <vtkCommand.h>
+#include <vtkDataObject.h>
 #include <vtkDoubleArray.h>
 #include <vtkExecutive.h>
 #include <vtkFieldData.h>
+#include <vtkInformationVector.h>
 #include <vtkNew.h>
 #include <vtkStringArray.h>
 
@@ -33,6 +35,13 @@ bool StageRunner::run(const char* name, vtkAlgorithm* stage, double share)
   return this->Message.empty() && !this->Owner->GetAbortExecute();
 }
 
+Status StageRunner::status() const
+{
+  return this->Message.empty() ? Status::cancelled()
+                               : Status::failed(this->Stage + ": " + this->message());
+}
+
+/// Without VTK's "ERROR: In file ..." in front.
 std::string StageRunner::message() const
 {
   const auto at = this->Message.find("): ");
@@ -80,6 +89,25 @@ void StageRunner::onError(vtkObject*, unsigned long, void* data)
   if (this->Message.empty())
   {
     this->Message = data ? static_cast<const char*>(data) : "unknown error";
+  }
+}
+
+void copyFields(vtkDataObject* from, vtkFieldData* to, std::initializer_list<const char*> names)
+{
+  for (const char* name : names)
+  {
+    if (vtkAbstractArray* a = from->GetFieldData()->GetAbstractArray(name))
+    {
+      to->AddArray(a);
+    }
+  }
+}
+
+void emptyOutputs(vtkInformationVector* outputs)
+{
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    vtkDataObject::GetData(outputs, port)->Initialize();
   }
 }
 } // namespace bsr

@@ -1,12 +1,17 @@
 #ifndef BSRStageRunner_h
 #define BSRStageRunner_h
 
+#include "Common/Status.h"
+
+#include <initializer_list>
 #include <string>
 #include <utility>
 #include <vector>
 
 class vtkAlgorithm;
+class vtkDataObject;
 class vtkFieldData;
+class vtkInformationVector;
 class vtkObject;
 
 namespace bsr
@@ -24,15 +29,14 @@ public:
   /// Updates a filter; false when it failed or was aborted. `share`: its part of the whole work.
   bool run(const char* name, vtkAlgorithm* stage, double share);
 
-  /// Of the stage that failed, without VTK's "ERROR: In file ..." in front; empty: none did.
-  std::string message() const;
-  /// The stage that ran last.
-  const std::string& stage() const { return this->Stage; }
+  /// Why run() was false: the stage that failed and its message, or cancelled.
+  Status status() const;
 
   /// Adds `StageNames` and `StageSeconds`.
   void addTimes(vtkFieldData* field) const;
 
 private:
+  std::string message() const;
   std::pair<unsigned long, unsigned long> observeErrors(vtkAlgorithm* stage);
   void onProgress(vtkObject* caller, unsigned long, void* data);
   void onError(vtkObject*, unsigned long, void* data);
@@ -47,6 +51,12 @@ private:
   std::vector<std::string> Names;
   std::vector<double> Seconds;
 };
+
+/// Adds those of the named arrays that the field data of `from` has.
+void copyFields(vtkDataObject* from, vtkFieldData* to, std::initializer_list<const char*> names);
+
+/// Empties the outputs of every port.
+void emptyOutputs(vtkInformationVector* outputs);
 } // namespace bsr
 
 #endif

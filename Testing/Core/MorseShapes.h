@@ -3,6 +3,7 @@
 
 #include "Common/CounterRandom.h"
 #include "Mesh/BuildSurface.h"
+#include "ScanMeshes.h"
 
 #include <cmath>
 #include <functional>
@@ -24,48 +25,16 @@ struct AnalyticSurface
   }
 };
 
-/// A grid of points, closed around in j, and around in i too or open; radius of ring 3, tube 1.
-inline AnalyticSurface ringOf(int n, int m, bool closed)
-{
-  using bsr::Index;
-  AnalyticSurface s;
-  s.Euler = 0;
-  const int rows = closed ? n : n + 1;
-  for (int i = 0; i < rows; ++i)
-  {
-    for (int j = 0; j < m; ++j)
-    {
-      const double u = 2.0 * M_PI * i / n;
-      const double v = 2.0 * M_PI * j / m;
-      const double r = 3.0 + std::cos(v);
-      s.Mesh.Points.emplace_back(closed ? bsr::Vec3(r * std::cos(u), r * std::sin(u), std::sin(v))
-                                        : bsr::Vec3(std::cos(v), std::sin(v), 4.0 * i / n));
-    }
-  }
-  for (int i = 0; i < n; ++i)
-  {
-    for (int j = 0; j < m; ++j)
-    {
-      const Index a = i * m + j;
-      const Index b = i * m + (j + 1) % m;
-      const Index c = (i + 1) % rows * m + j;
-      const Index d = (i + 1) % rows * m + (j + 1) % m;
-      s.Mesh.Triangles.push_back({a, c, d});
-      s.Mesh.Triangles.push_back({a, d, b});
-    }
-  }
-  return s;
-}
-
+/// The torus of radii 3 and 1, n points around the axis and m around the tube.
 inline AnalyticSurface torus(int n, int m)
 {
-  return ringOf(n, m, true);
+  return {torusMesh(n, m), 0};
 }
 
-/// An open tube of radius 1 and length 4 along z.
+/// An open tube of radius 1 and length 4 along z, n points along and m around.
 inline AnalyticSurface tube(int n, int m)
 {
-  return ringOf(n, m, false);
+  return {tubeMesh(m, n), 0};
 }
 
 /// An octahedron, each triangle split in four `levels` times, on an ellipsoid.

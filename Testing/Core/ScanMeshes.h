@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <map>
+#include <random>
 #include <set>
 
 /// Triangle meshes of known shape for the tests of the scan pipeline.
@@ -108,6 +109,29 @@ inline TriangleMesh torusMesh(int m, int n)
   return t;
 }
 
+/// m x n quads on the torus of torusMesh, each point moved by up to `noise` in x, y and z.
+inline bsr::QuadMesh torusQuads(int m, int n, double noise = 0.0)
+{
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> shake(-noise, noise);
+  bsr::QuadMesh q;
+  for (int j = 0; j < n; ++j)
+  {
+    for (int i = 0; i < m; ++i)
+    {
+      const double a = 2 * M_PI * i / m;
+      const double b = 2 * M_PI * j / n;
+      const double r = 3 + std::cos(b);
+      q.Points.push_back(Vec3(r * std::cos(a), r * std::sin(a), std::sin(b)) +
+                         Vec3(shake(random), shake(random), shake(random)));
+      const Index i1 = (i + 1) % m;
+      const Index j1 = (j + 1) % n;
+      q.Quads.push_back({j * m + i, j * m + i1, j1 * m + i1, j1 * m + i});
+    }
+  }
+  return q;
+}
+
 /// An open tube of radius 1 and height 4 around the z axis; m points around, n along.
 inline TriangleMesh tubeMesh(int m, int n)
 {
@@ -127,6 +151,22 @@ inline TriangleMesh tubeMesh(int m, int n)
     }
   }
   return t;
+}
+
+/// m x n quads of tubeMesh.
+inline bsr::QuadMesh tubeQuads(int m, int n)
+{
+  bsr::QuadMesh q;
+  q.Points = tubeMesh(m, n).Points;
+  for (int j = 0; j < n; ++j)
+  {
+    for (int i = 0; i < m; ++i)
+    {
+      const Index right = (i + 1) % m;
+      q.Quads.push_back({j * m + i, j * m + right, (j + 1) * m + right, (j + 1) * m + i});
+    }
+  }
+  return q;
 }
 
 /// The mesh without the triangles whose center is `gone`, and without points that none uses.

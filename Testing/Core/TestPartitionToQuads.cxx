@@ -1,5 +1,6 @@
 #include "Layout/NearestQuad.h"
 #include "Layout/PartitionToQuads.h"
+#include "ScanMeshes.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -8,32 +9,11 @@
 #include <random>
 
 using namespace bsr;
+using bsrtest::torusQuads;
 
 namespace
 {
 /// A closed torus of m x n quads; `noise` twists them.
-QuadMesh torusQuads(int m, int n, double noise = 0.0)
-{
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> shake(-noise, noise);
-  QuadMesh q;
-  for (int j = 0; j < n; ++j)
-  {
-    for (int i = 0; i < m; ++i)
-    {
-      const double a = 2 * M_PI * i / m;
-      const double b = 2 * M_PI * j / n;
-      const double r = 3 + std::cos(b);
-      q.Points.push_back(Vec3(r * std::cos(a), r * std::sin(a), std::sin(b)) +
-                         Vec3(shake(random), shake(random), shake(random)));
-      const Index i1 = (i + 1) % m;
-      const Index j1 = (j + 1) % n;
-      q.Quads.push_back({j * m + i, j * m + i1, j1 * m + i1, j1 * m + i});
-    }
-  }
-  return q;
-}
-
 std::vector<Vec3> cloud(int n, double size)
 {
   std::mt19937 random(11);

@@ -8,49 +8,11 @@
 #include <gtest/gtest.h>
 
 using namespace bsr;
+using bsrtest::torusQuads;
+using bsrtest::tubeQuads;
 
 namespace
 {
-/// m x n quads on the torus of bsrtest::torusMesh.
-QuadMesh torusQuads(int m, int n)
-{
-  QuadMesh q;
-  for (int j = 0; j < n; ++j)
-  {
-    for (int i = 0; i < m; ++i)
-    {
-      const double a = 2 * M_PI * i / m;
-      const double b = 2 * M_PI * j / n;
-      const double r = 3.0 + std::cos(b);
-      q.Points.emplace_back(r * std::cos(a), r * std::sin(a), std::sin(b));
-      const Index right = j * m + (i + 1) % m;
-      const Index up = (j + 1) % n * m;
-      q.Quads.push_back({j * m + i, right, up + (i + 1) % m, up + i});
-    }
-  }
-  return q;
-}
-
-/// m x n quads of bsrtest::tubeMesh, open at both ends.
-QuadMesh tubeQuads(int m, int n)
-{
-  QuadMesh q;
-  for (int j = 0; j <= n; ++j)
-  {
-    for (int i = 0; i < m; ++i)
-    {
-      const double a = 2 * M_PI * i / m;
-      q.Points.emplace_back(std::cos(a), std::sin(a), 4.0 * j / n - 2.0);
-      if (j < n)
-      {
-        const Index right = (i + 1) % m;
-        q.Quads.push_back({j * m + i, j * m + right, (j + 1) * m + right, (j + 1) * m + i});
-      }
-    }
-  }
-  return q;
-}
-
 std::vector<double> randomCosts(const LayoutGraph& graph, std::uint64_t seed)
 {
   CounterRandom random(seed, 0);

@@ -1,13 +1,17 @@
 #ifndef FilterTesting_h
 #define FilterTesting_h
 
+#include "Adapters/BSRSplineAdapter.h"
+
 #include <vtkAlgorithm.h>
 #include <vtkCommand.h>
 #include <vtkDataArray.h>
 #include <vtkDataObject.h>
 #include <vtkExecutive.h>
+#include <vtkFeatureEdges.h>
 #include <vtkFieldData.h>
 #include <vtkNew.h>
+#include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 
 #include <gtest/gtest.h>
@@ -174,6 +178,26 @@ inline double fieldValue(vtkDataObject* data, const char* name, vtkIdType tuple 
     return std::numeric_limits<double>::quiet_NaN();
   }
   return a->GetComponent(tuple, comp);
+}
+
+/// Edges of one cell.
+inline vtkIdType openEdges(vtkPolyData* surface)
+{
+  vtkNew<vtkFeatureEdges> edges;
+  edges->SetInputData(surface);
+  edges->FeatureEdgesOff();
+  edges->Update();
+  return edges->GetOutput()->GetNumberOfCells();
+}
+
+/// A spline model as the filters give it.
+inline vtkSmartPointer<vtkPolyData> surfaceOf(const bsr::SplineModel& model)
+{
+  auto out = vtkSmartPointer<vtkPolyData>::New();
+  bsr::Monitor monitor;
+  const bsr::Status s = bsr::splineSurfaceTo(model, {}, monitor, out);
+  EXPECT_TRUE(s.isOk()) << s.message();
+  return out;
 }
 } // namespace bsrtest
 

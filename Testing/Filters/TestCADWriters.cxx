@@ -33,15 +33,6 @@ using namespace bsrtest;
 
 namespace
 {
-vtkSmartPointer<vtkPolyData> surfaceOf(const SplineModel& m)
-{
-  auto out = vtkSmartPointer<vtkPolyData>::New();
-  Monitor monitor;
-  const Status s = splineSurfaceTo(m, {}, monitor, out);
-  EXPECT_TRUE(s.isOk()) << s.message();
-  return out;
-}
-
 std::string contents(const std::string& name)
 {
   std::ifstream in(name);

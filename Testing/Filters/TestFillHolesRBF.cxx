@@ -12,6 +12,7 @@
 #include <vtkSphereSource.h>
 
 using bsrtest::ErrorLog;
+using bsrtest::openEdges;
 
 namespace
 {
@@ -39,15 +40,6 @@ vtkSmartPointer<vtkPolyData> cappedSphere()
   p->GetPointData()->AddArray(height);
   p->GetCellData()->AddArray(number);
   return p;
-}
-
-vtkIdType openEdges(vtkPolyData* p)
-{
-  vtkNew<vtkFeatureEdges> edges;
-  edges->SetInputData(p);
-  edges->FeatureEdgesOff();
-  edges->Update();
-  return edges->GetOutput()->GetNumberOfCells();
 }
 } // namespace
 

@@ -14,6 +14,7 @@
 #include <vtkTable.h>
 
 using bsrtest::ErrorLog;
+using bsrtest::openEdges;
 
 namespace
 {
@@ -27,15 +28,6 @@ vtkSmartPointer<vtkPolyData> scan(double open)
   sphere->SetEndPhi(180.0 - open);
   sphere->Update();
   return sphere->GetOutput();
-}
-
-vtkIdType openEdges(vtkPolyData* p)
-{
-  vtkNew<vtkFeatureEdges> edges;
-  edges->SetInputData(p);
-  edges->FeatureEdgesOff();
-  edges->Update();
-  return edges->GetOutput()->GetNumberOfCells();
 }
 
 /// `rms`: bound, over the scan's diagonal.

@@ -20,18 +20,10 @@
 using namespace bsr;
 using bsrtest::ErrorLog;
 using bsrtest::fieldValue;
+using bsrtest::surfaceOf;
 
 namespace
 {
-vtkSmartPointer<vtkPolyData> surfaceOf(const SplineModel& m)
-{
-  auto out = vtkSmartPointer<vtkPolyData>::New();
-  Monitor monitor;
-  const Status s = splineSurfaceTo(m, {}, monitor, out);
-  EXPECT_TRUE(s.isOk()) << s.message();
-  return out;
-}
-
 vtkSmartPointer<vtkPolyData> cloud(const std::vector<Vec3>& points)
 {
   auto out = vtkSmartPointer<vtkPolyData>::New();
