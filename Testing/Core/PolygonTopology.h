@@ -168,8 +168,8 @@ inline std::string text(const std::vector<ComponentTopology>& components)
   return out.str();
 }
 
-/// Why a quad mesh is no layout, or nothing: topology, doublets, repeated quads, unused or
-/// non-finite points, quads that share two edges, and quads that are turned over in a corner.
+/// Why a quad mesh is no layout, or nothing: topology, doublets, vertices of more than eight edges,
+/// repeated quads, unused or non-finite points, quads that share two edges.
 inline std::string layoutProblem(const bsr::QuadMesh& mesh)
 {
   const PolygonTopology<4> topology(mesh.Quads);
@@ -210,6 +210,10 @@ inline std::string layoutProblem(const bsr::QuadMesh& mesh)
     if (v.second.size() < 3 && border.count(v.first) == 0)
     {
       why = "a doublet";
+    }
+    if (v.second.size() + border.count(v.first) > 8)
+    {
+      why = "a vertex of more than eight edges";
     }
   }
   if (quadsAt.size() != mesh.Points.size())

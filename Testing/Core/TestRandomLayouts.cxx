@@ -132,6 +132,7 @@ TEST_P(RandomLayouts, AreValid)
   {
     const Outcome o = outcomeOf(seed, 24);
     EXPECT_EQ(o.Problem, "") << "seed " << seed << ": " << bsrtest::randomSurface(seed, 24).Text;
+    EXPECT_EQ(o.Flipped, 0) << "seed " << seed;
   }
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomLayouts, testing::Range(0U, 15U));
@@ -165,6 +166,7 @@ TEST(RandomLayouts, Range)
       std::fflush(stdout);
     }
     EXPECT_EQ(o.Problem, "") << "seed " << seed << " grid " << grid;
+    EXPECT_EQ(o.Flipped, 0) << "seed " << seed << " grid " << grid;
     invalid += !o.Problem.empty();
     flipped += o.Flipped > 0;
     offCount += !count;
