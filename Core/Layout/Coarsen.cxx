@@ -1,11 +1,11 @@
 #include "Layout/Coarsen.h"
 
 #include "Common/Parallel.h"
+#include "Layout/AnnealCoarsener.h"
 #include "Layout/Chords.h"
 #include "Layout/LocalCoarsener.h"
 #include "Layout/NearestQuad.h"
 #include "Layout/RelaxLayout.h"
-#include "Layout/TurnAndCollapse.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +14,8 @@ namespace bsr
 {
 namespace
 {
+using coarsening::AnnealCoarsener;
 using coarsening::Bounds;
-using coarsening::DeepCoarsener;
 using coarsening::LocalCoarsener;
 constexpr int MostMended = 2500; ///< quads
 constexpr double MostMiss = 0.1; ///< of the count, above which everything is tried
@@ -85,41 +85,32 @@ public:
         }
       }
     }
-    return this->count() > this->O.Quads * (1.0 + MostMiss) ? this->goDeeper(bounds.back())
+    return this->count() > this->O.Quads * (1.0 + MostMiss) ? this->anneal(bounds.back())
                                                             : Status::ok();
   }
 
 private:
-  /// Where single steps lead no further, pairs of steps.
-  Status goDeeper(const Bounds& bound)
+  /// Where single steps lead no further, edges are turned at random.
+  Status anneal(const Bounds& bound)
   {
     SubMonitor quiet(this->M, 0.0, 0.0);
     const int most = static_cast<int>(std::floor(this->O.Quads * (1.0 + this->O.Tolerance)));
-    for (bool any = true; any && this->count() > most;)
+    AnnealCoarsener coarsener(this->D, this->Reference, this->O, bound, this->Cell2);
+    if (!coarsener.annealTo(most, quiet))
     {
-      DeepCoarsener deep(this->D, this->Reference, this->O, bound, this->Cell2);
-      any = false;
-      while (deep.count() > most && deep.turnAndCollapse(quiet))
-      {
-        any = true;
-        if (!deep.collapseTo(most, bound.Cost, quiet))
-        {
-          return Status::cancelled();
-        }
-      }
-      if (this->M.cancelled())
-      {
-        return Status::cancelled();
-      }
-      if (any)
-      {
-        this->D = deep.draft();
-        if (Status s = relaxLayout(this->D, this->Reference, 5, quiet, this->mending()); !s)
-        {
-          return s;
-        }
-      }
+      return Status::cancelled();
     }
+    this->D = coarsener.draft();
+    if (Status s = relaxLayout(this->D, this->Reference, 10, quiet, this->mending()); !s)
+    {
+      return s;
+    }
+    AnnealCoarsener last(this->D, this->Reference, this->O, bound, this->Cell2);
+    if (!last.improve(quiet))
+    {
+      return Status::cancelled();
+    }
+    this->D = last.draft();
     return Status::ok();
   }
 

@@ -21,6 +21,7 @@ struct CoarsenOptions
  * diagonal, edges are turned, always that of the least irregularity and size first. Points move
  * over the reference with every step, and no step may make the worst quad around it worse than a
  * bound that is loosened only when nothing else goes: what was not folded is not folded after.
+ * Where that leads no further, edges are turned at random until collapses are possible again.
  * Stops early where topology, creases or shape allow no step: then there are more quads than asked.
  */
 Status coarsenLayout(LayoutDraft& draft, const ReferenceSurface& reference,

@@ -1,6 +1,6 @@
 #pragma once
 
-// The local operations of coarsenLayout; used by Coarsen.cxx alone.
+// The local operations of coarsenLayout; used by Coarsen.cxx and AnnealCoarsener alone.
 
 #include "Common/Parallel.h"
 #include "Layout/Coarsen.h"

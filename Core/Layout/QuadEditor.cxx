@@ -358,7 +358,7 @@ bool QuadEditor::rotate(Index quad, int k, int way)
   const Index b = p[(k + 1) % 4];
   for (Index v : {a, b})
   {
-    if (this->valence(v) <= 3)
+    if (this->valence(v) <= (this->Rim[v] != 0 ? this->LeastRimEdges : 3))
     {
       return false;
     }
@@ -371,6 +371,14 @@ bool QuadEditor::rotate(Index quad, int k, int way)
     this->crease(other, (j + 1) % 4), this->crease(other, (j + 2) % 4),
     this->crease(other, (j + 3) % 4)};
   const int from = way > 0 ? 1 : 2;
+  for (int i = 0; i < 6; ++i)
+  {
+    const int more = i == from || i == from + 3 ? 1 : 0;
+    if (i % 3 != 0 && this->valence(hex[i]) + more > this->MostEdges)
+    {
+      return false;
+    }
+  }
   this->keep(quad);
   this->keep(other);
   for (Index v : hex)
@@ -379,7 +387,6 @@ bool QuadEditor::rotate(Index quad, int k, int way)
     this->unlink(quad, v);
     this->unlink(other, v);
   }
-  int most = this->MostEdges;
   for (int side = 0; side < 2; ++side)
   {
     const Index target = side == 0 ? quad : other;
@@ -393,14 +400,7 @@ bool QuadEditor::rotate(Index quad, int k, int way)
     }
     this->Mark[target] = static_cast<std::uint8_t>(mark);
   }
-  for (std::size_t i = 0; i < hex.size(); ++i)
-  {
-    if (!this->sound(hex[i], hex[i] == a || hex[i] == b ? 100 : most))
-    {
-      return false;
-    }
-  }
-  return true;
+  return std::all_of(hex.begin(), hex.end(), [this](Index v) { return this->sound(v, 100); });
 }
 
 bool QuadEditor::sound(Index v, int mostEdges) const
