@@ -3,6 +3,7 @@
 #include "Adapters/BSRMeshAdapter.h"
 #include "Adapters/BSRMonitor.h"
 #include "Adapters/BSRSplineAdapter.h"
+#include "Adapters/BSRWholeInputs.h"
 #include "Spline/G1Fit.h"
 
 #include <vtkCellArray.h>
@@ -261,6 +262,12 @@ int vtkBSplineG1Fit::FillOutputPortInformation(int port, vtkInformation* info)
 int vtkBSplineG1Fit::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  const bsr::WholeInputs whole(inputs, this->GetNumberOfInputPorts(), outputs);
+  if (!whole.here())
+  {
+    return 1;
+  }
+  inputs = whole.vectors();
   const auto start = std::chrono::steady_clock::now();
   vtkPolyData* model = vtkPolyData::GetData(outputs, 0);
   vtkPolyData* net = vtkPolyData::GetData(outputs, 1);

@@ -4,6 +4,7 @@
 #include "Adapters/BSRMeshAdapter.h"
 #include "Adapters/BSRMonitor.h"
 #include "Adapters/BSRSplineAdapter.h"
+#include "Adapters/BSRWholeInputs.h"
 #include "Contour/BranchedReport.h"
 
 #include <vtkDoubleArray.h>
@@ -159,6 +160,12 @@ int vtkBranchedContourSurface::FillOutputPortInformation(int port, vtkInformatio
 int vtkBranchedContourSurface::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  const bsr::WholeInputs whole(inputs, this->GetNumberOfInputPorts(), outputs);
+  if (!whole.here())
+  {
+    return 1;
+  }
+  inputs = whole.vectors();
   const auto start = std::chrono::steady_clock::now();
   vtkPolyData* model = vtkPolyData::GetData(outputs, 0);
   vtkPolyData* net = vtkPolyData::GetData(outputs, 1);

@@ -3,6 +3,7 @@
 #include "Adapters/BSRImageAdapter.h"
 #include "Adapters/BSRMeshAdapter.h"
 #include "Adapters/BSRMonitor.h"
+#include "Adapters/BSRWholeInputs.h"
 #include "Image/Closing.h"
 
 #include <vtkDataArray.h>
@@ -78,18 +79,31 @@ int vtkClosing::RequestInformation(
 }
 
 int vtkClosing::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  bsr::requestWholeExtent(inputs[0]->GetInformationObject(0));
+  bsr::requestWholeExtent(inputs[0]->GetInformationObject(0), outputs);
   return 1;
 }
 
 int vtkClosing::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  vtkImageData* input = vtkImageData::GetData(inputs[0]);
   vtkImageData* output = vtkImageData::GetData(outputs);
   output->Initialize();
+  const bsr::WholeInputs whole(inputs, 1, outputs);
+  const int done = whole.here() ? this->Close(whole.vectors(), output) : 1;
+  if (output->GetNumberOfPoints() > 0)
+  {
+    outputs->GetInformationObject(0)->Set(
+      vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), output->GetExtent(), 6);
+  }
+  bsr::deliverImage(output, outputs);
+  return done;
+}
+
+int vtkClosing::Close(vtkInformationVector** inputs, vtkImageData* output)
+{
+  vtkImageData* input = vtkImageData::GetData(inputs[0]);
   int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
   vtkDataArray* chosen = this->GetInputArrayToProcess(0, inputs, association);
   if (!chosen && bsr::namesNoArray(this->GetInputArrayInformation(0)))
@@ -115,8 +129,6 @@ int vtkClosing::RequestData(
     return bsr::notDelivered(this, closed.status());
   }
   bsr::imageGeometry(input, closed->Closed.Extent, output);
-  outputs->GetInformationObject(0)->Set(
-    vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), output->GetExtent(), 6);
   output->GetPointData()->AddArray(bsr::imageArray<vtkUnsignedCharArray>(closed->Closed, "Closed"));
   output->GetPointData()->SetScalars(
     bsr::imageArray<vtkFloatArray>(closed->SignedDistance, "SignedDistance"));

@@ -102,6 +102,9 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
 private:
+  /// Fills the output; the return value of RequestData.
+  int Close(vtkInformationVector** inputs, vtkImageData* output);
+
   vtkClosing(const vtkClosing&) = delete;
   void operator=(const vtkClosing&) = delete;
 

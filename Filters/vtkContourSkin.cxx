@@ -4,6 +4,7 @@
 #include "Adapters/BSRMeshAdapter.h"
 #include "Adapters/BSRMonitor.h"
 #include "Adapters/BSRSplineAdapter.h"
+#include "Adapters/BSRWholeInputs.h"
 #include "Contour/ContourSkin.h"
 
 #include <vtkCellData.h>
@@ -178,6 +179,12 @@ int vtkContourSkin::FillOutputPortInformation(int port, vtkInformation* info)
 int vtkContourSkin::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  const bsr::WholeInputs whole(inputs, this->GetNumberOfInputPorts(), outputs);
+  if (!whole.here())
+  {
+    return 1;
+  }
+  inputs = whole.vectors();
   const auto start = std::chrono::steady_clock::now();
   vtkPolyData* model = vtkPolyData::GetData(outputs, 0);
   vtkTable* table = vtkTable::GetData(outputs, 2);

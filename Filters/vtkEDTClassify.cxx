@@ -4,6 +4,7 @@
 #include "Adapters/BSRImageAdapter.h"
 #include "Adapters/BSRMeshAdapter.h"
 #include "Adapters/BSRMonitor.h"
+#include "Adapters/BSRWholeInputs.h"
 #include "Image/FiberSides.h"
 
 #include <vtkDoubleArray.h>
@@ -100,13 +101,19 @@ int vtkEDTClassify::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->Superclass::RequestUpdateExtent(request, inputs, outputs);
-  bsr::requestWholeExtent(inputs[1]->GetInformationObject(0));
+  bsr::requestWholeExtent(inputs[1]->GetInformationObject(0), outputs);
   return 1;
 }
 
 int vtkEDTClassify::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  const bsr::WholeInputs whole(inputs, this->GetNumberOfInputPorts(), outputs);
+  if (!whole.here())
+  {
+    return 1;
+  }
+  inputs = whole.vectors();
   vtkPolyData* surface = vtkPolyData::GetData(inputs[0]);
   vtkImageData* image = vtkImageData::GetData(inputs[1]);
   vtkPolyData* output = vtkPolyData::GetData(outputs);

@@ -2,6 +2,7 @@
 
 #include "Adapters/BSRMeshAdapter.h"
 #include "Adapters/BSRMonitor.h"
+#include "Adapters/BSRWholeInputs.h"
 #include "Mesh/FiberEnds.h"
 
 #include <vtkCellArray.h>
@@ -116,6 +117,12 @@ vtkFiberEnds::vtkFiberEnds()
 int vtkFiberEnds::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  const bsr::WholeInputs whole(inputs, this->GetNumberOfInputPorts(), outputs);
+  if (!whole.here())
+  {
+    return 1;
+  }
+  inputs = whole.vectors();
   vtkPolyData* surface = vtkPolyData::GetData(inputs[0]);
   vtkPolyData* raw = vtkPolyData::GetData(inputs[1]);
   vtkPolyData* output = vtkPolyData::GetData(outputs, 0);

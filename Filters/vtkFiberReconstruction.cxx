@@ -3,6 +3,7 @@
 #include "Adapters/BSRImageAdapter.h"
 #include "Adapters/BSRMonitor.h"
 #include "Adapters/BSRStageRunner.h"
+#include "Adapters/BSRWholeInputs.h"
 #include "Layout/QuadRemesh.h"
 #include "Spline/G1Fit.h"
 #include "vtkBSplineG1Fit.h"
@@ -87,7 +88,7 @@ vtkTypeBool vtkFiberReconstruction::ProcessRequest(
   if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()))
   {
     // The object is found in the whole volume.
-    bsr::requestWholeExtent(input[0]->GetInformationObject(0));
+    bsr::requestWholeExtent(input[0]->GetInformationObject(0), output);
     return 1;
   }
   if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
@@ -224,6 +225,12 @@ struct vtkFiberReconstruction::Stages
 int vtkFiberReconstruction::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  const bsr::WholeInputs whole(inputs, this->GetNumberOfInputPorts(), outputs);
+  if (!whole.here())
+  {
+    return 1;
+  }
+  inputs = whole.vectors();
   vtkNew<vtkImageData> image;
   image->ShallowCopy(vtkImageData::GetData(inputs[0]));
   if (bsr::namesNoArray(this->GetInputArrayInformation(0)))

@@ -2,6 +2,7 @@
 
 #include "Adapters/BSRMeshAdapter.h"
 #include "Adapters/BSRMonitor.h"
+#include "Adapters/BSRWholeInputs.h"
 #include "Mesh/FillHoles.h"
 
 #include <vtkCellArray.h>
@@ -113,6 +114,12 @@ void report(const bsr::FilledMesh& filled, vtkFieldData* field)
 int vtkFillHolesRBF::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  const bsr::WholeInputs whole(inputs, this->GetNumberOfInputPorts(), outputs);
+  if (!whole.here())
+  {
+    return 1;
+  }
+  inputs = whole.vectors();
   const auto start = std::chrono::steady_clock::now();
   vtkPolyData* input = vtkPolyData::GetData(inputs[0]);
   vtkPolyData* output = vtkPolyData::GetData(outputs);

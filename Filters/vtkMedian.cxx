@@ -1,5 +1,7 @@
 #include "vtkMedian.h"
 
+#include "Adapters/BSRWholeInputs.h"
+
 #include <vtkDataArray.h>
 #include <vtkDataSetAttributes.h>
 #include <vtkImageData.h>
@@ -32,6 +34,15 @@ void vtkMedian::SetInputArrayToProcess(
 }
 
 int vtkMedian::RequestData(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const bsr::WholeInputs whole(inputs, 1, outputs);
+  const int done = whole.here() ? this->Filter(request, whole.vectors(), outputs) : 1;
+  bsr::deliverImage(vtkImageData::GetData(outputs), outputs);
+  return done;
+}
+
+int vtkMedian::Filter(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkImageData* input = vtkImageData::GetData(inputs[0]);

@@ -38,6 +38,9 @@ protected:
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 private:
+  /// Fills the output; the return value of RequestData.
+  int Filter(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs);
+
   vtkMedian(const vtkMedian&) = delete;
   void operator=(const vtkMedian&) = delete;
 };

@@ -2,6 +2,7 @@
 
 #include "Adapters/BSRMeshAdapter.h"
 #include "Adapters/BSRMonitor.h"
+#include "Adapters/BSRWholeInputs.h"
 #include "Layout/GeodesicPartition.h"
 #include "Layout/PartitionToQuads.h"
 #include "Spline/SideNetwork.h"
@@ -243,6 +244,12 @@ vtkPolyData* vtkPartitionToQuads::MeshOf(vtkPointSet* input, vtkInformationVecto
 int vtkPartitionToQuads::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  const bsr::WholeInputs whole(inputs, this->GetNumberOfInputPorts(), outputs);
+  if (!whole.here())
+  {
+    return 1;
+  }
+  inputs = whole.vectors();
   vtkPointSet* input = vtkPointSet::GetData(inputs[0]);
   vtkPolyData* layout = vtkPolyData::GetData(inputs[1]);
   vtkPointSet* output = vtkPointSet::GetData(outputs, 0);

@@ -3,6 +3,7 @@
 #include "Adapters/BSRMeshAdapter.h"
 #include "Adapters/BSRMonitor.h"
 #include "Adapters/BSRSurfaceAdapter.h"
+#include "Adapters/BSRWholeInputs.h"
 #include "Layout/QuadRemesh.h"
 
 #include <vtkCellData.h>
@@ -140,6 +141,12 @@ vtkQuadRemesh::vtkQuadRemesh()
 int vtkQuadRemesh::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
+  const bsr::WholeInputs whole(inputVector, this->GetNumberOfInputPorts(), outputVector);
+  if (!whole.here())
+  {
+    return 1;
+  }
+  inputVector = whole.vectors();
   vtkPolyData* input = vtkPolyData::GetData(inputVector[0], 0);
   vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
   vtkPolyData* surface = vtkPolyData::GetData(outputVector, 1);

@@ -3,6 +3,7 @@
 #include "Adapters/BSRMeshAdapter.h"
 #include "Adapters/BSRMonitor.h"
 #include "Adapters/BSRStageRunner.h"
+#include "Adapters/BSRWholeInputs.h"
 #include "Layout/QuadRemesh.h"
 #include "vtkBSplineG1Fit.h"
 #include "vtkFillHolesRBF.h"
@@ -362,6 +363,12 @@ struct vtkScanToNURBS::Stages
 int vtkScanToNURBS::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  const bsr::WholeInputs whole(inputs, this->GetNumberOfInputPorts(), outputs);
+  if (!whole.here())
+  {
+    return 1;
+  }
+  inputs = whole.vectors();
   vtkNew<vtkPolyData> scan;
   scan->ShallowCopy(vtkPolyData::GetData(inputs[0]));
   const auto fail = [&](const bsr::Status& status)

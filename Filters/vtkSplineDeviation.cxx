@@ -3,6 +3,7 @@
 #include "Adapters/BSRMeshAdapter.h"
 #include "Adapters/BSRMonitor.h"
 #include "Adapters/BSRSplineAdapter.h"
+#include "Adapters/BSRWholeInputs.h"
 #include "Spline/ClosestPoint.h"
 
 #include <vtkDoubleArray.h>
@@ -105,6 +106,12 @@ int vtkSplineDeviation::FillInputPortInformation(int port, vtkInformation* info)
 int vtkSplineDeviation::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  const bsr::WholeInputs whole(inputs, this->GetNumberOfInputPorts(), outputs);
+  if (!whole.here())
+  {
+    return 1;
+  }
+  inputs = whole.vectors();
   vtkPointSet* input = vtkPointSet::GetData(inputs[0]);
   vtkPolyData* model = vtkPolyData::GetData(inputs[1]);
   vtkPointSet* output = vtkPointSet::GetData(outputs);

@@ -2,6 +2,7 @@
 
 #include "Adapters/BSRMonitor.h"
 #include "Adapters/BSRSplineAdapter.h"
+#include "Adapters/BSRWholeInputs.h"
 
 #include <vtkFieldData.h>
 #include <vtkInformation.h>
@@ -14,6 +15,12 @@ vtkStandardNewMacro(vtkSplineSample);
 int vtkSplineSample::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  const bsr::WholeInputs whole(inputs, this->GetNumberOfInputPorts(), outputs);
+  if (!whole.here())
+  {
+    return 1;
+  }
+  inputs = whole.vectors();
   vtkPolyData* input = vtkPolyData::GetData(inputs[0]);
   vtkPolyData* output = vtkPolyData::GetData(outputs);
   const auto model = bsr::splineModelFrom(input);

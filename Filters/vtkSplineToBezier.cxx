@@ -2,6 +2,7 @@
 
 #include "Adapters/BSRMonitor.h"
 #include "Adapters/BSRSplineAdapter.h"
+#include "Adapters/BSRWholeInputs.h"
 #include "Spline/Bezier.h"
 
 #include <vtkCellData.h>
@@ -164,6 +165,12 @@ int vtkSplineToBezier::FillInputPortInformation(int, vtkInformation* info)
 int vtkSplineToBezier::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  const bsr::WholeInputs whole(inputs, this->GetNumberOfInputPorts(), outputs);
+  if (!whole.here())
+  {
+    return 1;
+  }
+  inputs = whole.vectors();
   vtkPolyData* input = vtkPolyData::GetData(inputs[0]);
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputs);
   const auto model = bsr::splineModelFrom(input);

@@ -2,6 +2,7 @@
 
 #include "Adapters/BSRMeshAdapter.h"
 #include "Adapters/BSRMonitor.h"
+#include "Adapters/BSRWholeInputs.h"
 #include "Mesh/BuildSurface.h"
 #include "Mesh/Decimate.h"
 #include "Mesh/PointDistance.h"
@@ -160,6 +161,12 @@ int vtkSurfaceFromPoints::FillInputPortInformation(int, vtkInformation* info)
 int vtkSurfaceFromPoints::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  const bsr::WholeInputs whole(inputs, this->GetNumberOfInputPorts(), outputs);
+  if (!whole.here())
+  {
+    return 1;
+  }
+  inputs = whole.vectors();
   vtkPolyData* surface = vtkPolyData::GetData(outputs, SURFACE);
   vtkPolyData* cloud = vtkPolyData::GetData(outputs, POINTS);
   const auto fail = [&](const bsr::Status& status)

@@ -5,7 +5,10 @@
 
 #include <vtkErrorCode.h>
 #include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkMultiProcessController.h>
 #include <vtkPolyData.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
 
 static_assert(static_cast<int>(bsr::LengthUnit::Foot) == vtkSplineCADWriter::FOOT,
   "the units are in the same order");
@@ -21,6 +24,22 @@ int vtkSplineCADWriter::FillInputPortInformation(int, vtkInformation* info)
   return 1;
 }
 
+vtkTypeBool vtkSplineCADWriter::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  vtkMultiProcessController* all = vtkMultiProcessController::GetGlobalController();
+  if (all && request->Has(Pipeline::REQUEST_UPDATE_EXTENT()))
+  {
+    vtkInformation* input = inputs[0]->GetInformationObject(0);
+    input->Set(Pipeline::UPDATE_PIECE_NUMBER(), all->GetLocalProcessId());
+    input->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), all->GetNumberOfProcesses());
+    input->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    return 1;
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
 void vtkSplineCADWriter::WriteData()
 {
   this->NumberOfFaces = 0;
@@ -29,6 +48,12 @@ void vtkSplineCADWriter::WriteData()
   {
     this->SetErrorCode(vtkErrorCode::NoFileNameError);
     vtkErrorMacro("Set a FileName to write to.");
+    return;
+  }
+  vtkMultiProcessController* all = vtkMultiProcessController::GetGlobalController();
+  if (all && all->GetLocalProcessId() > 0)
+  {
+    this->SetErrorCode(vtkErrorCode::NoError);
     return;
   }
   const auto model = bsr::splineModelFrom(this->GetInput());

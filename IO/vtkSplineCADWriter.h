@@ -11,6 +11,9 @@
  * The file is written under a temporary name beside the target and renamed at the end: a failure
  * leaves an existing file untouched. An input that is no spline model gives one error.
  *
+ * In an MPI run all processes must call Write(): the filters before the writer work together. The
+ * first process writes, for that is where they leave their models; the others write nothing.
+ *
  * @warning Components that touch or cross each other are not united.
  *
  * @sa vtkSTEPWriter, vtkIGESWriter, vtkBSplineG1Fit
@@ -70,6 +73,8 @@ protected:
   ~vtkSplineCADWriter() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  vtkTypeBool ProcessRequest(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   void WriteData() override;
   /** Whether the file is IGES rather than STEP. */
   virtual bool IsIGES() const = 0;

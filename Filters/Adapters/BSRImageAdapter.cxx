@@ -4,7 +4,6 @@
 #include <vtkDataObject.h>
 #include <vtkInformation.h>
 #include <vtkPointData.h>
-#include <vtkStreamingDemandDrivenPipeline.h>
 
 namespace bsr
 {
@@ -12,15 +11,6 @@ bool namesNoArray(vtkInformation* array)
 {
   const char* name = array->Get(vtkDataObject::FIELD_NAME());
   return name && !*name;
-}
-
-void requestWholeExtent(vtkInformation* input)
-{
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
-  if (input && input->Has(Pipeline::WHOLE_EXTENT()))
-  {
-    input->Set(Pipeline::UPDATE_EXTENT(), input->Get(Pipeline::WHOLE_EXTENT()), 6);
-  }
 }
 
 Result<vtkDataArray*> imageScalars(vtkImageData* image, vtkDataArray* chosen, int association)

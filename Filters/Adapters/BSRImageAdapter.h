@@ -24,9 +24,6 @@ Result<vtkDataArray*> imageScalars(vtkImageData* image, vtkDataArray* chosen, in
 /// source that has not run yet): the active scalars are meant then.
 bool namesNoArray(vtkInformation* array);
 
-/// Asks for the whole image at an input, whatever piece is wanted of the output; null does nothing.
-void requestWholeExtent(vtkInformation* input);
-
 /// The voxels of an image as Core sees them; `values` is a point array of type T.
 template <class T>
 ImageView<T> imageView(vtkImageData* image, T* values)

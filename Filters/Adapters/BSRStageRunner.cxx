@@ -6,7 +6,6 @@
 #include <vtkDoubleArray.h>
 #include <vtkExecutive.h>
 #include <vtkFieldData.h>
-#include <vtkInformationVector.h>
 #include <vtkNew.h>
 #include <vtkStringArray.h>
 
@@ -100,14 +99,6 @@ void copyFields(vtkDataObject* from, vtkFieldData* to, std::initializer_list<con
     {
       to->AddArray(a);
     }
-  }
-}
-
-void emptyOutputs(vtkInformationVector* outputs)
-{
-  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
-  {
-    vtkDataObject::GetData(outputs, port)->Initialize();
   }
 }
 } // namespace bsr

@@ -11,7 +11,6 @@
 class vtkAlgorithm;
 class vtkDataObject;
 class vtkFieldData;
-class vtkInformationVector;
 class vtkObject;
 
 namespace bsr
@@ -54,9 +53,6 @@ private:
 
 /// Adds those of the named arrays that the field data of `from` has.
 void copyFields(vtkDataObject* from, vtkFieldData* to, std::initializer_list<const char*> names);
-
-/// Empties the outputs of every port.
-void emptyOutputs(vtkInformationVector* outputs);
 } // namespace bsr
 
 #endif
