@@ -6,8 +6,8 @@ find_package(OpenCASCADE REQUIRED COMPONENTS FoundationClasses ModelingData Mode
   Visualization ApplicationFramework DataExchange)
 
 set(BSR_VTK_COMPONENTS CommonCore CommonDataModel CommonExecutionModel CommonMath CommonMisc
-  CommonTransforms FiltersCore FiltersGeneral FiltersGeometry FiltersModeling FiltersSources ImagingCore
-  ImagingGeneral IOCore IOLegacy IOXML)
+  CommonTransforms FiltersCore FiltersGeneral FiltersGeometry FiltersModeling FiltersPoints FiltersSources ImagingCore
+  ImagingGeneral IOCore IOLegacy IOXML ParallelCore)
 
 set(BSR_WITH_PARAVIEW OFF)
 if (BSR_BUILD_PLUGIN)
