@@ -150,7 +150,7 @@ Volume<float> objectField(
 }
 
 Result<Volume<float>> closedDistance(
-  const Volume<float>& field, double radius, const Box& extent, Monitor& monitor)
+  Volume<float> field, double radius, const Box& extent, Monitor& monitor)
 {
   if (!(radius >= 0.0) || !std::isfinite(radius))
   {
@@ -178,6 +178,7 @@ Result<Volume<float>> closedDistance(
   {
     return dilation.status();
   }
+  field = Volume<float>(); // memory for the second transform
   const auto r = static_cast<float>(radius);
   parallelFor(0, dilation->Extent.volume(), std::int64_t{1} << 16,
     [&](std::int64_t begin, std::int64_t end)

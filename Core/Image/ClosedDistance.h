@@ -32,7 +32,7 @@ Volume<float> objectField(
  * A radius below 1 closes nothing: S is then the signed distance to the object itself.
  */
 Result<Volume<float>> closedDistance(
-  const Volume<float>& field, double radius, const Box& extent, Monitor& monitor);
+  Volume<float> field, double radius, const Box& extent, Monitor& monitor);
 
 /**
  * Makes a signed distance agree with the closed voxels in its components: parts of its inside that

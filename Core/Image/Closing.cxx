@@ -252,8 +252,8 @@ Status measureDepth(const ImageView<const T>& image, const Object& object, Radiu
   r.After = choice.Betti;
   r.VolumeRatio = ones(choice.Closed) / ones(object.Mask);
   const Box extent = outputExtent(image.Dims, object.Mask.Extent);
-  const Volume<float> field = objectField(image, r.IsoValue, object.Mask);
-  auto distance = closedDistance(field, r.Radius, extent, depth);
+  auto distance =
+    closedDistance(objectField(image, r.IsoValue, object.Mask), r.Radius, extent, depth);
   if (!distance)
   {
     return distance.status();

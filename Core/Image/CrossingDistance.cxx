@@ -61,19 +61,43 @@ private:
   std::vector<float> Crossings;
 };
 
-/// The transforms of the three families of crossings in two buffers.
+/// Elements of a slab of slices that is worked on at a time: enough for the threads, few for
+/// memory.
+constexpr std::int64_t SlabElements = std::int64_t{1} << 22;
+/// The same for crossings along z, and the number of slabs if that is less: for each of them the
+/// whole field is read.
+constexpr std::int64_t DeepSlabElements = std::int64_t{1} << 25;
+constexpr std::int64_t MostDeepSlabs = 8;
+
+/**
+ * The transforms of the three families of crossings. Those along x and y need one slice of the
+ * field for one slice of their distances in the plane, those along z all of it for one slice of the
+ * result: both are worked on in slabs, so that beside the field there is little more than the
+ * result.
+ */
 class CrossingPasses
 {
+  auto envelope(int axis) const
+  {
+    return [this, axis]()
+    { return LineEnvelope(this->In[axis], this->Lines[axis], this->Weights[axis], this->Bound); };
+  }
+  auto crossings(int axis, const LineSamples& at) const
+  {
+    return [this, axis, at]() { return CrossingLine(this->In[axis], at, this->Weights[axis]); };
+  }
+
 public:
-  CrossingPasses(const ImageView<const float>& field, const Box& samples,
-    const DistanceOptions& options, const Int3& work)
-      : In(field.Dims), Out(samples.Size), Work(work)
+  CrossingPasses(
+    const ImageView<const float>& field, const Box& samples, const DistanceOptions& options)
+      : In(field.Dims), Out(samples.Size)
   {
     const double unit = voxelLength(field.Spacing);
     for (int a = 0; a < 3; ++a)
     {
       this->Lines[a] = {samples.Lo[a], options.Step, samples.Size[a]};
       this->Weights[a] = (field.Spacing[a] / unit) * (field.Spacing[a] / unit);
+      this->Wide[a] = std::max(field.Dims[a], samples.Size[a]);
     }
     const double bound = options.Bound * options.Bound * (1.0 + 1e-6);
     this->Bound =
@@ -83,53 +107,120 @@ public:
       const_cast<float*>(field.Data), this->In[0], this->In[0], this->In[0] * this->In[1]};
   }
 
-  /// The squared distances end in `a`.
-  bool run(float* a, float* b, Monitor& monitor) const
+  /// What `run` needs: slices as wide as the samples, as many as there are in the field at least.
+  Int3 work() const { return {{this->Out[0], this->Out[1], this->Wide[2]}}; }
+
+  /// The squared distances, at the start of `result`.
+  bool run(float* result, Monitor& monitor) const
   {
-    const auto part = [&monitor](int i) { return SubMonitor(monitor, i / 9.0, (i + 1) / 9.0); };
-    SubMonitor m[9] = {
-      part(0), part(1), part(2), part(3), part(4), part(5), part(6), part(7), part(8)};
-    const auto crossings = [this](int axis)
-    { return [this, axis]() { return CrossingLine(In[axis], Lines[axis], Weights[axis]); }; };
-    const auto envelope = [this](int axis)
-    {
-      return [this, axis]()
-      { return LineEnvelope(In[axis], Lines[axis], Weights[axis], this->Bound); };
-    };
-    const Int3& n = this->In;
-    const Int3& o = this->Out;
-    const LineBuffer wideA = this->buffer(a, o[0]);
-    const LineBuffer narrowB = this->buffer(b, n[0]);
-    const LineBuffer wideB = this->buffer(b, o[0]);
-    return rowPass(this->Source, wideA, n[1], n[2], n[0], o[0], m[0], crossings(0)) &&
-           linePass(wideA, wideA, 1, n[2], n[1], o[1], m[1], envelope(1)) &&
-           linePass(this->Source, narrowB, 1, n[2], n[1], o[1], m[2], crossings(1)) &&
-           rowPass(narrowB, wideB, o[1], n[2], n[0], o[0], m[3], envelope(0)) &&
-           this->smaller(wideA, wideB, o[1], n[2], m[4]) &&
-           linePass(wideA, wideA, 2, o[1], n[2], o[2], m[5], envelope(2)) &&
-           linePass(this->Source, narrowB, 2, n[1], n[2], o[2], m[6], crossings(2)) &&
-           rowPass(narrowB, wideB, n[1], o[2], n[0], o[0], m[7], envelope(0)) &&
-           linePass(wideB, wideB, 1, o[2], n[1], o[1], m[8], envelope(1)) &&
-           this->smaller(wideA, wideB, o[1], o[2], m[8]);
+    SubMonitor planes(monitor, 0.0, 0.4);
+    SubMonitor depths(monitor, 0.4, 0.6);
+    SubMonitor along(monitor, 0.6, 1.0);
+    const LineBuffer to = this->slices(result, this->Out);
+    return this->inPlanes(to, planes) &&
+           linePass(
+             to, to, 2, this->Out[1], this->In[2], this->Out[2], depths, this->envelope(2)) &&
+           this->alongZ(to, along);
   }
 
 private:
-  LineBuffer buffer(float* data, std::int64_t width) const
+  static LineBuffer slices(float* data, const Int3& size)
   {
-    return {data, width, this->Work[0], this->Work[0] * this->Work[1]};
+    return {data, size[0], size[0], size[0] * size[1]};
   }
-  bool smaller(const LineBuffer& a, const LineBuffer& b, std::int64_t rows, std::int64_t slices,
+  static LineBuffer from(const LineBuffer& b, std::int64_t slice)
+  {
+    return {b.Data + slice * b.StrideZ, b.Width, b.StrideY, b.StrideZ};
+  }
+  static LineBuffer narrowed(const LineBuffer& b, std::int64_t width)
+  {
+    return {b.Data, width, b.StrideY, b.StrideZ};
+  }
+  /// Distances in each plane of the field to the crossings along x and y.
+  bool inPlanes(const LineBuffer& to, Monitor& monitor) const
+  {
+    const std::int64_t plane = this->Wide[0] * this->Wide[1];
+    const std::int64_t most = std::max<std::int64_t>(1, SlabElements / plane);
+    const Int3 size{{this->Wide[0], this->Wide[1], std::min(most, this->In[2])}};
+    Volume<float> first(Box{{}, size}, {});
+    Volume<float> second(Box{{}, size}, {});
+    const LineBuffer a = slices(first.Data.get(), size);
+    const LineBuffer b = slices(second.Data.get(), size);
+    const LineBuffer narrowA = narrowed(a, this->Out[0]);
+    const auto n = static_cast<double>(this->In[2]);
+    for (std::int64_t z = 0; z < this->In[2]; z += most)
+    {
+      const std::int64_t count = std::min(most, this->In[2] - z);
+      const LineBuffer field = from(this->Source, z);
+      SubMonitor part(monitor, static_cast<double>(z) / n, static_cast<double>(z + count) / n);
+      SubMonitor quiet(part, 0.0, 0.0);
+      if (!rowPass(field, a, this->In[1], count, this->In[0], this->Out[0], part,
+            this->crossings(0, this->Lines[0])) ||
+          !linePass(
+            narrowA, narrowA, 1, count, this->In[1], this->Out[1], quiet, this->envelope(1)) ||
+          !linePass(field, b, 1, count, this->In[1], this->Out[1], quiet,
+            this->crossings(1, this->Lines[1])) ||
+          !rowPass(
+            b, b, this->Out[1], count, this->In[0], this->Out[0], quiet, this->envelope(0)) ||
+          !this->store(a, &b, from(to, z), count, quiet))
+      {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// Takes the smaller of the distances so far and those to crossings along z.
+  bool alongZ(const LineBuffer& to, Monitor& monitor) const
+  {
+    const std::int64_t plane = this->Wide[0] * this->Wide[1];
+    const std::int64_t most = std::max({DeepSlabElements / plane,
+      (this->Out[2] + MostDeepSlabs - 1) / MostDeepSlabs, std::int64_t{1}});
+    const Int3 size{{this->Wide[0], this->Wide[1], std::min(most, this->Out[2])}};
+    Volume<float> slab(Box{{}, size}, {});
+    const LineBuffer a = slices(slab.Data.get(), size);
+    const LineBuffer narrow = narrowed(a, this->Out[0]);
+    const auto n = static_cast<double>(this->Out[2]);
+    for (std::int64_t z = 0; z < this->Out[2]; z += most)
+    {
+      const std::int64_t count = std::min(most, this->Out[2] - z);
+      LineSamples at = this->Lines[2];
+      at.First += z * at.Step;
+      at.Count = count;
+      SubMonitor part(monitor, static_cast<double>(z) / n, static_cast<double>(z + count) / n);
+      SubMonitor quiet(part, 0.0, 0.0);
+      if (!linePass(
+            this->Source, a, 2, this->In[1], this->In[2], count, part, this->crossings(2, at)) ||
+          !rowPass(a, a, this->In[1], count, this->In[0], this->Out[0], quiet, this->envelope(0)) ||
+          !linePass(
+            narrow, narrow, 1, count, this->In[1], this->Out[1], quiet, this->envelope(1)) ||
+          !this->store(a, nullptr, from(to, z), count, quiet))
+      {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// The smallest of `a` and `b`, or without `b` of `a` and what is there.
+  bool store(const LineBuffer& a, const LineBuffer* b, const LineBuffer& to, std::int64_t count,
     Monitor& monitor) const
   {
-    return monitoredFor(0, rows * slices, 16, monitor,
+    return monitoredFor(0, this->Out[1] * count, 16, monitor,
       [&](std::int64_t begin, std::int64_t end)
       {
         for (std::int64_t r = begin; r < end; ++r)
         {
-          const std::int64_t at = (r % rows) * a.StrideY + (r / rows) * a.StrideZ;
-          for (std::int64_t i = 0; i < a.Width; ++i)
+          const std::int64_t y = r % this->Out[1];
+          const std::int64_t z = r / this->Out[1];
+          const auto row = [y, z](const LineBuffer& l)
+          { return l.Data + y * l.StrideY + z * l.StrideZ; };
+          const float* const one = row(a);
+          float* const out = row(to);
+          const float* const other = b ? row(*b) : out;
+          for (std::int64_t i = 0; i < this->Out[0]; ++i)
           {
-            a.Data[at + i] = std::min(a.Data[at + i], b.Data[at + i]);
+            out[i] = std::min(one[i], other[i]);
           }
         }
       });
@@ -137,31 +228,21 @@ private:
 
   Int3 In;
   Int3 Out;
-  Int3 Work;
+  Int3 Wide{}; ///< the larger of both
   std::array<LineSamples, 3> Lines;
   Double3 Weights{};
   float Bound = 0.0f;
   LineBuffer Source;
 };
 
-/// Square roots, moved to where the samples belong.
-void finish(const Volume<float>& from, Volume<float>& to)
+void takeRoots(Volume<float>& squared)
 {
-  const ImageView<float> view = to.view();
-  const ImageView<const float> source = from.view();
-  parallelFor(0, view.Dims[1] * view.Dims[2], 16,
+  parallelFor(0, squared.Extent.volume(), std::int64_t{1} << 16,
     [&](std::int64_t begin, std::int64_t end)
     {
-      for (std::int64_t r = begin; r < end; ++r)
+      for (std::int64_t i = begin; i < end; ++i)
       {
-        const std::int64_t j = r % view.Dims[1];
-        const std::int64_t k = r / view.Dims[1];
-        const float* src = source.row(j, k);
-        float* dst = view.row(j, k);
-        for (std::int64_t i = 0; i < view.Dims[0]; ++i)
-        {
-          dst[i] = std::sqrt(src[i]);
-        }
+        squared.Data[i] = std::sqrt(squared.Data[i]);
       }
     });
 }
@@ -180,29 +261,19 @@ Result<Volume<float>> crossingDistance(
   }
   Box samples = options.Extent.empty() ? Box{{{0, 0, 0}}, field.Dims} : options.Extent;
   Double3 spacing = field.Spacing;
-  Int3 work{};
   for (int a = 0; a < 3; ++a)
   {
     samples.Size[a] = (samples.Size[a] + options.Step - 1) / options.Step;
     spacing[a] *= static_cast<double>(options.Step);
-    work[a] = std::max(samples.Size[a], field.Dims[a]);
   }
-  Volume<float> a(Box{samples.Lo, work}, spacing);
+  const CrossingPasses passes(field, samples, options);
+  Volume<float> result(Box{samples.Lo, passes.work()}, spacing);
+  if (!passes.run(result.Data.get(), monitor))
   {
-    Volume<float> b(a.Extent, spacing);
-    const CrossingPasses passes(field, samples, options, work);
-    if (!passes.run(a.Data.get(), b.Data.get(), monitor))
-    {
-      return Status::cancelled();
-    }
+    return Status::cancelled();
   }
-  if (work == samples.Size)
-  {
-    finish(a, a);
-    return a;
-  }
-  Volume<float> result(samples, spacing);
-  finish(a, result);
+  result.Extent = samples; // the slices beyond were needed on the way only
+  takeRoots(result);
   return result;
 }
 } // namespace bsr

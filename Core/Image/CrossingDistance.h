@@ -16,8 +16,9 @@ namespace bsr
  * field itself.
  *
  * Options as in squaredDistance (ToZeros has no meaning here); the field must be finite. Without
- * any crossing all distances are infinite. Memory: two floats a voxel of the larger of field and
- * result. The result is in voxels of the field (its smallest spacing), not squared, without a sign.
+ * any crossing all distances are infinite. Memory: the result, with as many slices as the
+ * field has at least, and an eighth of the larger of both. The result is in voxels of the field
+ * (its smallest spacing), not squared, without a sign.
  */
 Result<Volume<float>> crossingDistance(
   const ImageView<const float>& field, const DistanceOptions& options, Monitor& monitor);
