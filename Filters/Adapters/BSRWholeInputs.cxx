@@ -4,6 +4,7 @@
 #include <vtkAppendPolyData.h>
 #include <vtkCleanPolyData.h>
 #include <vtkDataObject.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkExtentTranslator.h>
 #include <vtkFieldData.h>
 #include <vtkImageData.h>
@@ -127,6 +128,7 @@ vtkSmartPointer<vtkDataObject> wholeOf(const Pieces& all)
                : vtkImageData::SafeDownCast(pieces.front()) ? wholeImage(pieces)
                                                             : wholePoints(pieces);
   whole->GetFieldData()->ShallowCopy(pieces.front()->GetFieldData());
+  whole->GetAttributes(vtkDataObject::POINT)->RemoveArray(vtkDataSetAttributes::GhostArrayName());
   return whole;
 }
 

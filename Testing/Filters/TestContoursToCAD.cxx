@@ -29,26 +29,22 @@ void expectValidFile(const std::string& path)
 }
 } // namespace
 
-TEST(ContoursToCAD, BranchedContourSurfaceOfAVessel)
+class ContoursToCAD : public testing::TestWithParam<const char*>
 {
-  BSR_SHARED_DATA_OR_SKIP(path, "contours_vmtk_aorta_y.vtp");
+};
+
+TEST_P(ContoursToCAD, BranchedContourSurfaceIsASolid)
+{
+  BSR_SHARED_DATA_OR_SKIP(path, GetParam());
   expectValidFile<vtkBranchedContourSurface>(path);
 }
 
-TEST(ContoursToCAD, BranchedContourSurfaceOfABone)
+TEST_P(ContoursToCAD, ContourSkinIsASolid)
 {
-  BSR_SHARED_DATA_OR_SKIP(path, "contours_femur12_z.vtp");
-  expectValidFile<vtkBranchedContourSurface>(path);
-}
-
-TEST(ContoursToCAD, ContourSkinOfAVessel)
-{
-  BSR_SHARED_DATA_OR_SKIP(path, "contours_vmtk_aorta_y.vtp");
+  BSR_SHARED_DATA_OR_SKIP(path, GetParam());
   expectValidFile<vtkContourSkin>(path);
 }
 
-TEST(ContoursToCAD, ContourSkinOfCondyles)
-{
-  BSR_SHARED_DATA_OR_SKIP(path, "contours_femurL19_distal.vtp");
-  expectValidFile<vtkContourSkin>(path);
-}
+INSTANTIATE_TEST_SUITE_P(Contours, ContoursToCAD,
+  testing::Values(
+    "contours_vmtk_aorta_y.vtp", "contours_femur12_z.vtp", "contours_femurL19_distal.vtp"));
