@@ -17,8 +17,10 @@ namespace
 using coarsening::AnnealCoarsener;
 using coarsening::Bounds;
 using coarsening::LocalCoarsener;
-constexpr int MostMended = 2500; ///< quads
-constexpr double MostMiss = 0.1; ///< of the count, above which everything is tried
+constexpr int MostMended = 2500;   ///< quads
+constexpr double FarOff = 1.5;     ///< of the count, above which slow steps are done with less care
+constexpr double Decimation = 0.8; ///< of the quads are left by a step without much care
+constexpr double MostMiss = 0.1;   ///< of the count, above which everything is tried
 
 /// The whole of it: strips and local operations in turn, under bounds that get looser.
 class Coarsener
@@ -55,6 +57,10 @@ public:
     {
     }
     const double start = this->count();
+    if (Status s = this->decimate(static_cast<int>(FarOff * most), bounds[2]); !s)
+    {
+      return s;
+    }
     for (const Bounds& bound : bounds)
     {
       double gain = 0.2;
@@ -74,6 +80,11 @@ public:
         if (Status s = this->local(next, bound); !s)
         {
           return s;
+        }
+        if (this->count() > FarOff * most && before - this->count() < 0.5 * (before - next) &&
+            &bound != &bounds.back())
+        {
+          break; // no use to be strict so far from the count
         }
         if (this->count() > 0.99 * before)
         {
@@ -114,11 +125,29 @@ private:
     return Status::ok();
   }
 
-  /// Where many handles leave no room, most quads would be mended over and over: only near the end.
-  int mending() const
+  /// Where many handles leave no room, care is lost on what is far from the count.
+  Status decimate(int target, const Bounds& bound)
   {
-    return -6 * this->Euler < this->O.Quads || this->count() < MostMended ? 2 : 0;
+    bool goes = this->crowded();
+    const double start = this->count();
+    while (goes && this->count() > target)
+    {
+      this->M.progress((start - this->count()) / start);
+      const int before = this->count();
+      const int next = std::max(target, static_cast<int>(Decimation * before));
+      if (Status s = this->local(next, bound); !s)
+      {
+        return s;
+      }
+      goes = before - this->count() > 0.5 * (before - next);
+    }
+    return Status::ok();
   }
+
+  /// Where many handles leave no room, most quads would be mended over and over: only near the end.
+  int mending() const { return !this->crowded() || this->count() < MostMended ? 2 : 0; }
+
+  bool crowded() const { return -6 * this->Euler >= this->O.Quads; }
 
   int count() const { return static_cast<int>(this->D.Mesh.Quads.size()); }
 

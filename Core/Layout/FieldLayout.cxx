@@ -120,8 +120,10 @@ Status coarsenedRoad(const Task& task, int fine, Candidates& best, Monitor& moni
 Status pairedDraft(const Task& task, int quads, LayoutDraft& draft, Monitor& monitor)
 {
   TriangleSurface fine = task.Surface;
+  // Bending is seen on triangles as fine as those of the surface; finer ones would only cost time.
+  const int measured = std::clamp(task.Surface.faces() / 40, task.Quads, quads);
   auto sizing = Sizing::measured(
-    task.Surface, task.Reference, quads, task.Options.Kind, task.Options.Field, monitor);
+    task.Surface, task.Reference, measured, task.Options.Kind, task.Options.Field, monitor);
   if (!sizing)
   {
     return sizing.status();

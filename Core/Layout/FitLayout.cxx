@@ -166,13 +166,15 @@ private:
   bool locate(Monitor& monitor)
   {
     const NearestQuad nearest(this->D.Mesh);
+    const bool first = this->Hit.empty();
     this->Hit.resize(this->Samples.size());
     return parallelForUntilCancelled(0, static_cast<std::int64_t>(this->Hit.size()), 512, monitor,
-      [&](std::int64_t first, std::int64_t last)
+      [&](std::int64_t from, std::int64_t to)
       {
         Index hint = -1;
-        for (std::int64_t i = first; i < last; ++i)
+        for (std::int64_t i = from; i < to; ++i)
         {
+          hint = first ? hint : this->Hit[i].Quad;
           this->Hit[i] = nearest.findFacing(this->Samples[i].Point, this->Samples[i].Normal, hint);
           hint = this->Hit[i].Quad;
         }

@@ -303,6 +303,13 @@ std::vector<PointFrame> pointFrames(const QuadMesh& mesh)
 
 void LayoutDraft::project(const ReferenceSurface& reference)
 {
+  std::vector<Index> triangles;
+  this->project(reference, triangles);
+}
+
+void LayoutDraft::project(const ReferenceSurface& reference, std::vector<Index>& triangles)
+{
+  triangles.resize(this->Mesh.Points.size(), -1);
   const std::vector<PointFrame> frames = pointFrames(this->Mesh);
   parallelFor(0, static_cast<std::int64_t>(this->Mesh.Points.size()), 64,
     [&](std::int64_t first, std::int64_t last)
@@ -316,7 +323,10 @@ void LayoutDraft::project(const ReferenceSurface& reference)
         }
         else if (this->Kind[v] == VertexKind::Free)
         {
-          p = reference.Faces.nearestFacing(p, frames[v].Normal, frames[v].Longest).Point;
+          const auto hit =
+            reference.Faces.nearestFacing(p, frames[v].Normal, frames[v].Longest, triangles[v]);
+          triangles[v] = hit.Triangle;
+          p = hit.Point;
         }
       }
     });

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <queue>
 
 namespace bsr::coarsening
@@ -64,12 +65,15 @@ public:
         Farthest(bounds.Distance),
         Facing(bounds.Facing),
         Stamp(draft.Mesh.Quads.size(), 0),
+        Changed(draft.Mesh.Quads.size()),
         Held(draft.Mesh.Quads.size()),
         Side(draft.Mesh.Points.size()),
         Normal(draft.Mesh.Points.size()),
+        Triangle(draft.Mesh.Points.size(), -1),
         Loss(2 * draft.Mesh.Quads.size(), 0.0),
         Cell2(cell2)
   {
+    std::iota(this->Changed.begin(), this->Changed.end(), 0);
     parallelFor(0, static_cast<std::int64_t>(this->Side.size()), 64,
       [&](std::int64_t first, std::int64_t last)
       {
@@ -89,12 +93,13 @@ public:
   int count() const { return this->E.count(); }
   LayoutDraft draft() const { return this->E.draft(); }
 
-  /// Collapses until `target` quads are left; false: cancelled.
+  /// Collapses until `target` quads are left, starting from quads at what was changed since the
+  /// last call, at the first one from all; false: cancelled.
   bool collapseTo(int target, double mostCost, Monitor& monitor)
   {
     std::priority_queue<Candidate> queue;
     this->Queue = &queue;
-    for (Index q = 0; q < static_cast<Index>(this->E.Quads.size()); ++q)
+    for (Index q : this->changed())
     {
       this->push(q);
     }
@@ -156,6 +161,22 @@ public:
   }
 
 protected:
+  /// Quads at the points of those that were changed last; none from then on.
+  std::vector<Index> changed()
+  {
+    std::vector<Index> points;
+    for (Index q : this->Changed)
+    {
+      if (this->E.alive(q))
+      {
+        points.insert(points.end(), this->E.Quads[q].begin(), this->E.Quads[q].end());
+      }
+    }
+    this->Changed.clear();
+    QuadEditor::sortUnique(points);
+    return this->E.quadsAt(points);
+  }
+
   double cost(Index q, int k) const
   {
     const auto& c = this->E.Quads[q];
@@ -210,6 +231,25 @@ protected:
     double Change = 0.0; ///< of the sum of squared distances, relative to squared sides
   };
 
+  /// Around a quad, a little larger than it need be.
+  struct Ball
+  {
+    Vec3 Center;
+    double Radius;
+  };
+  Ball ball(Index q) const
+  {
+    const auto& c = this->E.Quads[q];
+    const auto& p = this->E.Points;
+    const Vec3 center = 0.25 * (p[c[0]] + p[c[1]] + p[c[2]] + p[c[3]]);
+    double radius = 0.0;
+    for (Index v : c)
+    {
+      radius = std::max(radius, (p[v] - center).norm());
+    }
+    return {center, 1.000001 * radius};
+  }
+
   Holding held(const std::vector<Index>& before, const std::vector<Index>& quads) const
   {
     Holding h;
@@ -221,17 +261,27 @@ protected:
       }
     }
     QuadEditor::sortUnique(h.Samples);
+    std::vector<Ball> balls;
+    balls.reserve(quads.size());
+    for (Index q : quads)
+    {
+      balls.push_back(this->ball(q));
+    }
     for (Index i : h.Samples)
     {
+      const Vec3& p = this->Samples[i].Point;
       double least = std::numeric_limits<double>::infinity();
       Index at = -1;
-      for (Index q : quads)
+      for (std::size_t k = 0; k < quads.size(); ++k)
       {
-        const double d = distanceToQuad(this->E, q, this->Samples[i].Point);
+        const double reach = least + balls[k].Radius;
+        const double d = (p - balls[k].Center).squaredNorm() > reach * reach
+                           ? least
+                           : distanceToQuad(this->E, quads[k], p);
         if (d < least)
         {
           least = d;
-          at = q;
+          at = quads[k];
         }
       }
       h.Quads.push_back(at);
@@ -414,6 +464,10 @@ protected:
       ++this->Stamp[q];
       this->push(q);
     }
+    if (this->Queue == nullptr)
+    {
+      this->Changed.insert(this->Changed.end(), quads.begin(), quads.end());
+    }
     return true;
   }
 
@@ -456,7 +510,9 @@ protected:
   Vec3 onSurface(Index v, const Vec3& p)
   {
     const PointFrame frame = this->frame(v);
-    const auto hit = this->Reference.Faces.nearestFacing(p, frame.Normal, frame.Longest);
+    const auto hit =
+      this->Reference.Faces.nearestFacing(p, frame.Normal, frame.Longest, this->Triangle[v]);
+    this->Triangle[v] = hit.Triangle;
     this->Normal[v] = this->Reference.Faces.normal(hit.Triangle);
     return this->E.Kind[v] == VertexKind::Crease ? this->Reference.Creases.nearest(p).Point
                                                  : hit.Point;
@@ -537,9 +593,11 @@ protected:
   double Farthest;
   double Facing;
   std::vector<std::uint32_t> Stamp;
+  std::vector<Index> Changed;           ///< quads to be tried by the next collapseTo
   std::vector<std::vector<Index>> Held; ///< samples nearest to each quad
   std::vector<double> Side;             ///< wanted, per point
   std::vector<Vec3> Normal;             ///< of the surface, per point
+  std::vector<Index> Triangle;          ///< of the surface, per point: where it was last
   std::vector<double> Distance;         ///< of each sample
   std::vector<double> Loss;             ///< last known, of the two collapses of each quad
   double Cell2;                         ///< squared side of quads, mean over the samples

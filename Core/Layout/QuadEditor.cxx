@@ -230,6 +230,15 @@ Index QuadEditor::collapse(Index quad, int k)
     return -1;
   }
   const int most = std::max({this->MostEdges, this->valence(a), this->valence(c)});
+  int doublets = 0;
+  for (Index b : sides)
+  {
+    doublets += this->Rim[b] == 0 && this->Around[b].size() == 3;
+  }
+  if (this->valence(a) + this->valence(c) - 2 - 2 * doublets > most + 1)
+  {
+    return -1; // hopeless; what is left is found below
+  }
   std::array<bool, 2> crease{};
   for (int i = 0; i < 2; ++i)
   {

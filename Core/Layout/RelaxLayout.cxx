@@ -23,7 +23,10 @@ class Relaxer
 {
 public:
   Relaxer(LayoutDraft& draft, const ReferenceSurface& reference)
-      : Draft(draft), Reference(reference), Around(draft.Mesh.Points.size())
+      : Draft(draft),
+        Reference(reference),
+        Around(draft.Mesh.Points.size()),
+        Triangle(draft.Mesh.Points.size(), -1)
   {
     for (std::size_t q = 0; q < draft.Mesh.Quads.size(); ++q)
     {
@@ -75,7 +78,7 @@ public:
       }
     }
     this->Draft.Mesh.Points.swap(moved);
-    this->Draft.project(this->Reference);
+    this->Draft.project(this->Reference, this->Triangle);
     if (guarded)
     {
       this->takeBack(before);
@@ -209,11 +212,16 @@ private:
     return w;
   }
 
-  Vec3 onSurface(Index v, const Vec3& p, const PointFrame& frame) const
+  Vec3 onSurface(Index v, const Vec3& p, const PointFrame& frame)
   {
-    return this->Draft.Kind[v] == VertexKind::Crease
-             ? this->Reference.Creases.nearest(p).Point
-             : this->Reference.Faces.nearestFacing(p, frame.Normal, frame.Longest).Point;
+    if (this->Draft.Kind[v] == VertexKind::Crease)
+    {
+      return this->Reference.Creases.nearest(p).Point;
+    }
+    const auto hit =
+      this->Reference.Faces.nearestFacing(p, frame.Normal, frame.Longest, this->Triangle[v]);
+    this->Triangle[v] = hit.Triangle;
+    return hit.Point;
   }
 
   int search(Index v)
@@ -240,8 +248,13 @@ private:
       for (int k = 0; k < 8; ++k)
       {
         const double angle = k * M_PI / 4.0;
-        p = this->onSurface(v, from + step * (std::cos(angle) * x + std::sin(angle) * y), frame);
-        const double w = this->worst(v);
+        p = from + step * (std::cos(angle) * x + std::sin(angle) * y);
+        double w = this->worst(v);
+        if (w > best || this->Draft.Kind[v] == VertexKind::Crease)
+        {
+          p = this->onSurface(v, p, frame);
+          w = this->worst(v);
+        }
         if (w > best + 1e-6)
         {
           best = w;
@@ -258,8 +271,9 @@ private:
   LayoutDraft& Draft;
   const ReferenceSurface& Reference;
   std::vector<std::vector<Corner>> Around;
-  std::vector<double> Side;   ///< per quad
-  std::vector<Index> Nearest; ///< quad of each sample
+  std::vector<double> Side;    ///< per quad
+  std::vector<Index> Nearest;  ///< quad of each sample
+  std::vector<Index> Triangle; ///< of the surface, per point: where it was last
 };
 } // namespace
 

@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <numeric>
 
 namespace bsr
@@ -10,6 +12,9 @@ namespace bsr
 namespace
 {
 constexpr Index LeafSize = 6;
+constexpr double Near = 1e-6;  ///< barycentric coordinate of points that may be beyond a side
+constexpr double Sound = 1e-8; ///< squared, twice the area over the square of the longest side
+constexpr double Slack = 1.0 - 1e-9; ///< of lower bounds, for rounding
 
 Vec3 nearestOnSegment(const Vec3& p, const Vec3& a, const Vec3& b)
 {
@@ -23,15 +28,15 @@ double squaredDistanceToBox(const Vec3& p, const Vec3& low, const Vec3& high)
 {
   return (low - p).cwiseMax(p - high).cwiseMax(0.0).squaredNorm();
 }
-} // namespace
 
-Vec3 nearestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
+/// The nearest point of a triangle where the cross product of b - a and c - a is known.
+Vec3 nearestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& n)
 {
   const Vec3 e0 = b - a;
   const Vec3 e1 = c - a;
-  const Vec3 n = e0.cross(e1);
   const double nn = n.squaredNorm();
   const double longest = std::max(e0.squaredNorm(), e1.squaredNorm());
+  std::array<bool, 3> beyond = {true, true, true}; // the sides from a, b and c
   if (nn > 1e-24 * longest * longest)
   {
     const Vec3 w = p - a;
@@ -41,16 +46,36 @@ Vec3 nearestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& 
     {
       return a + beta * e0 + gamma * e1;
     }
-  }
-  Vec3 best = nearestOnSegment(p, a, b);
-  for (const Vec3& q : {nearestOnSegment(p, b, c), nearestOnSegment(p, c, a)})
-  {
-    if ((q - p).squaredNorm() < (best - p).squaredNorm())
+    if (nn > Sound * longest * longest)
     {
-      best = q;
+      beyond[0] = gamma < Near;
+      beyond[1] = beta + gamma > 1.0 - Near;
+      beyond[2] = beta < Near;
+    }
+  }
+  Vec3 best = Vec3::Zero();
+  double least = std::numeric_limits<double>::infinity();
+  const std::array<const Vec3*, 4> corners = {&a, &b, &c, &a};
+  for (int k = 0; k < 3; ++k)
+  {
+    if (beyond[k])
+    {
+      const Vec3 q = nearestOnSegment(p, *corners[k], *corners[k + 1]);
+      const double d = (q - p).squaredNorm();
+      if (d < least)
+      {
+        least = d;
+        best = q;
+      }
     }
   }
   return best;
+}
+} // namespace
+
+Vec3 nearestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
+{
+  return nearestOnTriangle(p, a, b, c, (b - a).cross(c - a));
 }
 
 TriangleTree::TriangleTree(std::vector<Vec3> points, std::vector<std::array<Index, 3>> triangles)
@@ -61,6 +86,17 @@ TriangleTree::TriangleTree(std::vector<Vec3> points, std::vector<std::array<Inde
   for (const auto& t : this->Triangles)
   {
     centers.push_back((this->Points[t[0]] + this->Points[t[1]] + this->Points[t[2]]) / 3.0);
+  }
+  this->Cross.reserve(this->Triangles.size());
+  this->Square.reserve(this->Triangles.size());
+  for (const auto& t : this->Triangles)
+  {
+    const Vec3 e0 = this->Points[t[1]] - this->Points[t[0]];
+    const Vec3 e1 = this->Points[t[2]] - this->Points[t[0]];
+    const Vec3 n = e0.cross(e1);
+    const double longest = std::max(e0.squaredNorm(), e1.squaredNorm());
+    this->Cross.push_back(n);
+    this->Square.push_back(n.squaredNorm() > Sound * longest * longest ? n.squaredNorm() : 0.0);
   }
   this->Order.resize(this->Triangles.size());
   std::iota(this->Order.begin(), this->Order.end(), 0);
@@ -118,19 +154,31 @@ Index TriangleTree::build(
   return id;
 }
 
-Vec3 TriangleTree::cross(Index triangle) const
+void TriangleTree::visit(const Vec3& p, Index triangle, NearestOnTriangle& best) const
 {
   const auto& t = this->Triangles[triangle];
   const Vec3& a = this->Points[t[0]];
-  return (this->Points[t[1]] - a).cross(this->Points[t[2]] - a);
+  const Vec3& n = this->Cross[triangle];
+  const double height = n.dot(p - a);
+  const double square = this->Square[triangle];
+  if (square > 0.0 && height * height * Slack >= best.SquaredDistance * square)
+  {
+    return; // its plane is too far
+  }
+  const Vec3 q = nearestOnTriangle(p, a, this->Points[t[1]], this->Points[t[2]], n);
+  const double d = (q - p).squaredNorm();
+  if (d < best.SquaredDistance)
+  {
+    best = {triangle, q, d};
+  }
 }
 
 void TriangleTree::boundCrosses(Node& node) const
 {
-  node.LowCross = node.HighCross = this->cross(this->Order[node.First]);
+  node.LowCross = node.HighCross = this->Cross[this->Order[node.First]];
   for (Index i = node.First + 1; i < node.First + node.Count; ++i)
   {
-    const Vec3 n = this->cross(this->Order[i]);
+    const Vec3& n = this->Cross[this->Order[i]];
     node.LowCross = node.LowCross.cwiseMin(n);
     node.HighCross = node.HighCross.cwiseMax(n);
   }
@@ -161,17 +209,9 @@ void TriangleTree::search(
     }
     for (Index i = node.First; i < node.First + node.Count; ++i)
     {
-      if (!allowed(this->Order[i]))
+      if (allowed(this->Order[i]))
       {
-        continue;
-      }
-      const auto& t = this->Triangles[this->Order[i]];
-      const Vec3 q =
-        nearestOnTriangle(p, this->Points[t[0]], this->Points[t[1]], this->Points[t[2]]);
-      const double d = (q - p).squaredNorm();
-      if (d < best.SquaredDistance)
-      {
-        best = {this->Order[i], q, d};
+        this->visit(p, this->Order[i], best);
       }
     }
     if (node.Count == 0)
@@ -199,10 +239,15 @@ NearestOnTriangle TriangleTree::nearest(const Vec3& p) const
 }
 
 NearestOnTriangle TriangleTree::nearestFacing(
-  const Vec3& p, const Vec3& direction, double most) const
+  const Vec3& p, const Vec3& direction, double most, Index hint) const
 {
   NearestOnTriangle best;
   best.SquaredDistance = most * most;
+  const auto allowed = [&](Index triangle) { return this->Cross[triangle].dot(direction) > 0.0; };
+  if (hint >= 0 && allowed(hint))
+  {
+    this->visit(p, hint, best);
+  }
   this->search(
     p, best,
     [&](const Node& node)
@@ -210,13 +255,13 @@ NearestOnTriangle TriangleTree::nearestFacing(
       const Vec3 low = node.LowCross.cwiseProduct(direction);
       return low.cwiseMax(node.HighCross.cwiseProduct(direction)).sum() > 0.0;
     },
-    [&](Index triangle) { return this->cross(triangle).dot(direction) > 0.0; });
+    allowed);
   return best.Triangle >= 0 ? best : this->nearest(p);
 }
 
 Vec3 TriangleTree::normal(Index triangle) const
 {
-  const Vec3 n = this->cross(triangle);
+  const Vec3& n = this->Cross[triangle];
   const double length = n.norm();
   return length > 0.0 ? Vec3(n / length) : Vec3(Vec3::Zero());
 }

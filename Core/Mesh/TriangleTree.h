@@ -31,7 +31,10 @@ public:
   NearestOnTriangle nearest(const Vec3& p) const;
   /// The same among triangles whose normal makes less than 90 degrees with `direction`, so that
   /// the other side of a thin wall is not taken; where there is none within `most`, among all.
-  NearestOnTriangle nearestFacing(const Vec3& p, const Vec3& direction, double most) const;
+  /// \param hint a triangle that is likely to be near, or -1; it saves time, and of triangles that
+  /// are equally near it may be the one that is taken.
+  NearestOnTriangle nearestFacing(
+    const Vec3& p, const Vec3& direction, double most, Index hint = -1) const;
   /// Unit normal of a triangle (zero for degenerate ones).
   Vec3 normal(Index triangle) const;
 
@@ -50,13 +53,16 @@ private:
   template <class MayHold, class Allowed>
   void search(
     const Vec3& p, NearestOnTriangle& best, const MayHold& mayHold, const Allowed& allowed) const;
-  Vec3 cross(Index triangle) const;
+  /// Improves `best` by a triangle.
+  void visit(const Vec3& p, Index triangle, NearestOnTriangle& best) const;
   void boundCrosses(Node& node) const;
   Index build(std::vector<Index>& order, const std::vector<Vec3>& centers, Index first, Index last);
   void grow(Node& node, Index triangle) const;
 
   std::vector<Vec3> Points;
   std::vector<std::array<Index, 3>> Triangles;
+  std::vector<Vec3> Cross;    ///< of two edges of each triangle
+  std::vector<double> Square; ///< of that; 0 for slivers
   std::vector<Index> Order;
   std::vector<Node> Nodes;
 };
