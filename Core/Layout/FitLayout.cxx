@@ -28,8 +28,8 @@ struct Sample
   double Weight; ///< area
 };
 
-/// The middles of triangles and of their edges, each with a share of the area.
-std::vector<Sample> samplesOf(const TriangleSurface& s)
+/// Points of the triangles, each with a share of the area: one, or if `many` four of each.
+std::vector<Sample> samplesOf(const TriangleSurface& s, bool many)
 {
   std::vector<Sample> samples;
   for (Index f = 0; f < s.faces(); ++f)
@@ -46,9 +46,10 @@ std::vector<Sample> samplesOf(const TriangleSurface& s)
     }
     const auto c = s.corners(f);
     const Vec3 middle = (s.Points[c[0]] + s.Points[c[1]] + s.Points[c[2]]) / 3.0;
-    samples.push_back({middle, n / area, 0.4 * area});
-    for (Index v : c)
+    samples.push_back({middle, n / area, many ? 0.4 * area : area});
+    for (int k = 0; k < 3 && many; ++k)
     {
+      const Index v = c[k];
       samples.push_back({0.3 * middle + 0.7 * s.Points[v], n / area, 0.2 * area});
     }
   }
@@ -60,7 +61,8 @@ class Fitter
 public:
   Fitter(LayoutDraft& draft, const TriangleSurface& s)
       : D(draft),
-        Samples(samplesOf(s)),
+        Samples(
+          samplesOf(s, -6 * s.eulerCharacteristic() < static_cast<int>(draft.Mesh.Quads.size()))),
         Row(draft.Mesh.Points.size(), -1),
         Offset(draft.Mesh.Points.size(), 0.0)
   {

@@ -372,16 +372,14 @@ LayoutReport checkLayout(const QuadMesh& mesh)
 
 double scaledJacobian(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 {
-  const std::array<const Vec3*, 4> p = {&a, &b, &c, &d};
+  const std::array<Vec3, 4> edge = {b - a, c - b, d - c, a - d};
+  std::array<double, 4> side;
   std::array<Vec3, 4> cross;
-  std::array<double, 4> scale;
   Vec3 normal = Vec3::Zero();
   for (int k = 0; k < 4; ++k)
   {
-    const Vec3 e = *p[(k + 1) % 4] - *p[k];
-    const Vec3 f = *p[(k + 3) % 4] - *p[k];
-    cross[k] = e.cross(f);
-    scale[k] = e.norm() * f.norm();
+    side[k] = edge[k].norm();
+    cross[k] = edge[(k + 3) % 4].cross(edge[k]);
     normal += cross[k];
   }
   const double length = normal.norm();
@@ -392,7 +390,8 @@ double scaledJacobian(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
   double worst = 1.0;
   for (int k = 0; k < 4; ++k)
   {
-    worst = std::min(worst, scale[k] > 0.0 ? cross[k].dot(normal) / (length * scale[k]) : -1.0);
+    const double scale = side[k] * side[(k + 3) % 4];
+    worst = std::min(worst, scale > 0.0 ? cross[k].dot(normal) / (length * scale) : -1.0);
   }
   return worst;
 }

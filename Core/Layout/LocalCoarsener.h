@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <queue>
 
 namespace bsr::coarsening
@@ -65,7 +64,6 @@ public:
         Farthest(bounds.Distance),
         Facing(bounds.Facing),
         Stamp(draft.Mesh.Quads.size(), 0),
-        Changed(draft.Mesh.Quads.size()),
         Held(draft.Mesh.Quads.size()),
         Side(draft.Mesh.Points.size()),
         Normal(draft.Mesh.Points.size()),
@@ -73,7 +71,6 @@ public:
         Loss(2 * draft.Mesh.Quads.size(), 0.0),
         Cell2(cell2)
   {
-    std::iota(this->Changed.begin(), this->Changed.end(), 0);
     parallelFor(0, static_cast<std::int64_t>(this->Side.size()), 64,
       [&](std::int64_t first, std::int64_t last)
       {
@@ -93,13 +90,12 @@ public:
   int count() const { return this->E.count(); }
   LayoutDraft draft() const { return this->E.draft(); }
 
-  /// Collapses until `target` quads are left, starting from quads at what was changed since the
-  /// last call, at the first one from all; false: cancelled.
+  /// Collapses until `target` quads are left; false: cancelled.
   bool collapseTo(int target, double mostCost, Monitor& monitor)
   {
     std::priority_queue<Candidate> queue;
     this->Queue = &queue;
-    for (Index q : this->changed())
+    for (Index q = 0; q < static_cast<Index>(this->E.Quads.size()); ++q)
     {
       this->push(q);
     }
@@ -161,22 +157,6 @@ public:
   }
 
 protected:
-  /// Quads at the points of those that were changed last; none from then on.
-  std::vector<Index> changed()
-  {
-    std::vector<Index> points;
-    for (Index q : this->Changed)
-    {
-      if (this->E.alive(q))
-      {
-        points.insert(points.end(), this->E.Quads[q].begin(), this->E.Quads[q].end());
-      }
-    }
-    this->Changed.clear();
-    QuadEditor::sortUnique(points);
-    return this->E.quadsAt(points);
-  }
-
   double cost(Index q, int k) const
   {
     const auto& c = this->E.Quads[q];
@@ -464,10 +444,6 @@ protected:
       ++this->Stamp[q];
       this->push(q);
     }
-    if (this->Queue == nullptr)
-    {
-      this->Changed.insert(this->Changed.end(), quads.begin(), quads.end());
-    }
     return true;
   }
 
@@ -593,7 +569,6 @@ protected:
   double Farthest;
   double Facing;
   std::vector<std::uint32_t> Stamp;
-  std::vector<Index> Changed;           ///< quads to be tried by the next collapseTo
   std::vector<std::vector<Index>> Held; ///< samples nearest to each quad
   std::vector<double> Side;             ///< wanted, per point
   std::vector<Vec3> Normal;             ///< of the surface, per point
