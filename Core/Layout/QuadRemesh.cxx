@@ -224,10 +224,12 @@ Result<FieldLayout> layOut(TriangleSurface& s, const ReferenceSurface& reference
   return found;
 }
 
-/// Is the component, for so many quads, one that gets a box around it?
-bool boxed(const TriangleSurface& s, int quads, const QuadRemeshOptions& options)
+/// Is the component, for so many quads, one that gets a box around it? If it is the last, no other
+/// one makes up for what is missed.
+bool boxed(const TriangleSurface& s, int quads, bool last, const QuadRemeshOptions& options)
 {
-  return options.Method == LayoutMethod::FieldAligned && quads <= SpeckQuads && isSphere(s);
+  const int most = last ? std::min(SpeckQuads, 6 + options.NumberOfQuads / 20) : SpeckQuads;
+  return options.Method == LayoutMethod::FieldAligned && quads <= most && isSphere(s);
 }
 
 /// Or one quad?
@@ -237,9 +239,10 @@ bool flat(const TriangleSurface& s, int quads, const QuadRemeshOptions& options)
 }
 
 /// The layout of a speck; no quads if it is none.
-LayoutDraft speckLayout(const TriangleSurface& s, int quads, const QuadRemeshOptions& options)
+LayoutDraft speckLayout(
+  const TriangleSurface& s, int quads, bool last, const QuadRemeshOptions& options)
 {
-  if (boxed(s, quads, options))
+  if (boxed(s, quads, last, options))
   {
     return boxLayout(s);
   }
@@ -247,13 +250,13 @@ LayoutDraft speckLayout(const TriangleSurface& s, int quads, const QuadRemeshOpt
 }
 
 /// The layout of a component, which is decimated on the way; `layout` is of that alone.
-Status layOutComponent(TriangleSurface& s, int quads, const QuadRemeshOptions& options,
+Status layOutComponent(TriangleSurface& s, int quads, bool last, const QuadRemeshOptions& options,
   const Sizing::Field& field, QuadLayout& layout, Monitor& monitor)
 {
   Clock clock;
   const std::vector<Vec3> samples = samplesOf(s);
   const int euler = s.eulerCharacteristic();
-  LayoutDraft made = speckLayout(s, quads, options);
+  LayoutDraft made = speckLayout(s, quads, last, options);
   const bool speck = !made.Mesh.Quads.empty();
   if (monitor.cancelled())
   {
@@ -342,7 +345,7 @@ std::vector<std::size_t> workOrder(
   for (std::size_t i = 0; i < surfaces.size(); ++i)
   {
     const TriangleSurface& s = surfaces[i];
-    const bool speck = boxed(s, counts[i], options) || flat(s, counts[i], options);
+    const bool speck = boxed(s, counts[i], false, options) || flat(s, counts[i], options);
     keys.emplace_back(std::min(0, s.eulerCharacteristic()), !speck, i);
   }
   std::sort(keys.begin(), keys.end());
@@ -378,7 +381,8 @@ Status layOutAll(std::vector<TriangleSurface>& surfaces, const QuadRemeshOptions
     SubMonitor part(monitor, done, done + share[i]);
     done += share[i];
     const int count = counts.front();
-    if (Status status = layOutComponent(surfaces[i], count, options, field, parts[i], part);
+    const bool last = left.size() == 1;
+    if (Status status = layOutComponent(surfaces[i], count, last, options, field, parts[i], part);
         !status)
     {
       return status;
@@ -399,22 +403,6 @@ Status layOutAll(std::vector<TriangleSurface>& surfaces, const QuadRemeshOptions
   return Status::ok();
 }
 } // namespace
-
-int leastQuads(int euler, int boundaryLoops)
-{
-  if (boundaryLoops > 0)
-  {
-    const double border = std::max(3.0 * boundaryLoops, -0.8 * euler);
-    return std::max(1, static_cast<int>(std::ceil(0.5 * border - euler)));
-  }
-  if (euler > 0)
-  {
-    return 6;
-  }
-  const double points =
-    std::max<double>(-euler, std::ceil(0.5 * (5.0 + std::sqrt(25.0 - 16.0 * euler))));
-  return static_cast<int>(points) - euler;
-}
 
 Result<QuadLayout> quadRemesh(
   const TriangleMesh& mesh, const QuadRemeshOptions& options, Monitor& monitor)

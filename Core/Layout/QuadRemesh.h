@@ -3,6 +3,7 @@
 #include "Common/Monitor.h"
 #include "Common/Status.h"
 #include "Layout/FieldLayout.h"
+#include "Layout/LeastQuads.h"
 #include "Layout/MorseLayout.h"
 #include "Mesh/BuildSurface.h"
 
@@ -54,13 +55,6 @@ struct QuadLayout
   /// FieldAligned: repaired and decimated, without cells and function.
   PartitionedSurface Surface;
 };
-
-/**
- * A lower bound, seldom reached, of the quads of a component: 6 for a ball. Closed surfaces: no
- * edge twice (Hartsfield and Ringel 1989) and at most 8 edges a vertex, where the sum of 4 -
- * valence is four times the Euler characteristic; open ones: at least three edges a loop, too.
- */
-int leastQuads(int euler, int boundaryLoops);
 
 /// InvalidParameter, with the range allowed, where an option is absurd.
 Status checkOptions(const QuadRemeshOptions& options);

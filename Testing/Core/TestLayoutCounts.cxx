@@ -2,6 +2,7 @@
 #include "Layout/ComponentShares.h"
 #include "Layout/QuadRemesh.h"
 #include "LayoutTesting.h"
+#include "ScanMeshes.h"
 #include "Tunnels.h"
 
 #include <gtest/gtest.h>
@@ -57,6 +58,39 @@ TEST(LayoutCounts, SharesGoByAreaAndTopology)
   EXPECT_EQ(shares[1], 1);
 }
 
+TEST(LayoutCounts, LeastQuadsOfHandlesAndLoops)
+{
+  EXPECT_EQ(leastQuads(2, 0), 6);
+  EXPECT_EQ(leastQuads(1, 1), 1);
+  EXPECT_EQ(leastQuads(0, 2), 3);
+  EXPECT_EQ(leastQuads(-100, 0), 200);
+  EXPECT_EQ(leastQuads(-28, 0), 56);
+  EXPECT_EQ(leastQuads(-24, 8), 36);   // 24 vertices on the loops are more than handles need
+  EXPECT_EQ(leastQuads(-29, 9), 43);   // 28, for it must be an even number
+  EXPECT_EQ(leastQuads(-420, 2), 588); // 168 on each loop
+}
+
+TEST(LayoutCounts, LeastQuadsAreReachedOnSmallSurfaces)
+{
+  // Five vertices on a torus, each joined to all others; then without one of the quads.
+  QuadMesh mesh;
+  for (Index i = 0; i < 5; ++i)
+  {
+    mesh.Points.emplace_back(std::cos(i), std::sin(i), 0.1 * i);
+    mesh.Quads.push_back({i, (i + 1) % 5, (i + 3) % 5, (i + 2) % 5});
+  }
+  const LayoutReport torus = checkLayout(mesh);
+  EXPECT_TRUE(torus.Valid) << torus.Problem;
+  EXPECT_EQ(torus.Euler, 0);
+  EXPECT_EQ(leastQuads(0, 0), 5);
+  mesh.Quads.pop_back();
+  const LayoutReport open = checkLayout(mesh);
+  EXPECT_TRUE(open.Valid) << open.Problem;
+  EXPECT_EQ(open.Euler, -1);
+  EXPECT_EQ(open.BoundaryLoops, 1);
+  EXPECT_EQ(leastQuads(-1, 1), 4);
+}
+
 TEST(LayoutCounts, ManySpecksDoNotCostTheCount)
 {
   TriangleMesh mesh;
@@ -80,6 +114,25 @@ TEST(LayoutCounts, ManySpecksDoNotCostTheCount)
   }
 }
 
+TEST(LayoutCounts, OnlySpecksThatOthersMakeUpForAreBoxes)
+{
+  const TriangleMesh small = bsrtest::icosphere(3);
+  TriangleMesh ball = small;
+  EXPECT_NEAR(static_cast<double>(remeshed(ball, 11).Mesh.Quads.size()), 11.0, 1.1);
+  const auto first = static_cast<Index>(ball.Points.size());
+  for (const Vec3& p : small.Points)
+  {
+    ball.Points.emplace_back(0.4 * p + Vec3(3.0, 0.0, 0.0));
+  }
+  for (const auto& t : small.Triangles)
+  {
+    ball.Triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+  const QuadLayout layout = remeshed(ball, 60);
+  EXPECT_NEAR(static_cast<double>(layout.Mesh.Quads.size()), 60.0, 6.0);
+  EXPECT_EQ(layout.Stages[1], LayoutStage::Box);
+}
+
 TEST(LayoutCounts, HandlesOnFewQuads)
 {
   const QuadLayout layout = remeshed(tunnels(2), 10);
@@ -100,4 +153,5 @@ TEST(LayoutCounts, HandlesAndOpeningsOnFewQuads)
   EXPECT_EQ(layout.Report.Flipped, 0);
   EXPECT_LE(layout.Report.MaxValence, 8);
   EXPECT_LE(static_cast<double>(layout.Mesh.Quads.size()), 1.2 * layout.MinimumQuads);
+  EXPECT_GE(static_cast<int>(layout.Mesh.Quads.size()), layout.MinimumQuads);
 }

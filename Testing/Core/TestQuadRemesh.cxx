@@ -448,15 +448,6 @@ TEST(QuadRemesh, UnitsDoNotMatter)
   expectSound(remeshed(mesh, 150), 0, 0);
 }
 
-TEST(QuadRemesh, LeastQuads)
-{
-  EXPECT_EQ(leastQuads(2, 0), 6);
-  EXPECT_EQ(leastQuads(0, 0), 5);
-  EXPECT_EQ(leastQuads(1, 1), 1);
-  EXPECT_EQ(leastQuads(0, 2), 3);
-  EXPECT_EQ(leastQuads(-100, 0), 200);
-}
-
 TEST(QuadRemesh, CancelsWithoutOutput)
 {
   struct Stop : Monitor
