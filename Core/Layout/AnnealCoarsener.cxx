@@ -6,6 +6,7 @@ namespace
 {
 constexpr double Temperature = 10.0; ///< in squares of edges
 constexpr int Patient = 500;         ///< turns tried a quad without a collapse, before it ends
+constexpr int MostPatient = 100000;  ///< turns tried without a collapse
 constexpr int Passes = 8;            ///< over all edges, to improve shapes
 constexpr double Ease = 0.05;        ///< of the price: how much more very bad shapes count
 constexpr double Faced = 0.2;        ///< cosine from which a quad looks the way the surface does
@@ -23,7 +24,8 @@ AnnealCoarsener::AnnealCoarsener(const LayoutDraft& draft, const ReferenceSurfac
 bool AnnealCoarsener::annealTo(int target, Monitor& monitor)
 {
   int since = 0; // the last collapse
-  for (int i = 0; this->count() > target && since < Patient * this->count(); ++i, ++since)
+  const auto patience = [this] { return std::min(Patient * this->count(), MostPatient); };
+  for (int i = 0; this->count() > target && since < patience(); ++i, ++since)
   {
     if (i % 8 == 0 && monitor.cancelled())
     {
