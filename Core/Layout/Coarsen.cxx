@@ -20,6 +20,7 @@ using coarsening::LocalCoarsener;
 constexpr int MostMended = 2500;   ///< quads
 constexpr double FarOff = 1.5;     ///< of the count, above which slow steps are done with less care
 constexpr double Decimation = 0.8; ///< of the quads are left by a step without much care
+constexpr int Improvements = 3;    ///< of shapes, after edges were turned at random
 constexpr double MostMiss = 0.1;   ///< of the count, above which everything is tried
 
 /// The whole of it: strips and local operations in turn, under bounds that get looser.
@@ -112,16 +113,19 @@ private:
       return Status::cancelled();
     }
     this->D = coarsener.draft();
-    if (Status s = relaxLayout(this->D, this->Reference, 10, quiet, this->mending()); !s)
+    for (int round = 0; round < Improvements; ++round)
     {
-      return s;
+      if (Status s = relaxLayout(this->D, this->Reference, 10, quiet, this->mending()); !s)
+      {
+        return s;
+      }
+      AnnealCoarsener last(this->D, this->Reference, this->O, bound, this->Cell2);
+      if (!last.improve(quiet))
+      {
+        return Status::cancelled();
+      }
+      this->D = last.draft();
     }
-    AnnealCoarsener last(this->D, this->Reference, this->O, bound, this->Cell2);
-    if (!last.improve(quiet))
-    {
-      return Status::cancelled();
-    }
-    this->D = last.draft();
     return Status::ok();
   }
 
