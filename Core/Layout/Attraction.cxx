@@ -16,13 +16,13 @@ double attractionWeight(double relativeDistance)
   return 1.0 + std::min(d * d, 20.0);
 }
 
-std::vector<Vec3> attraction(
-  const QuadMesh& mesh, const std::vector<SurfaceSample>& samples, std::vector<Index>& quads)
+std::vector<Vec3> attraction(const QuadMesh& mesh, const std::vector<SurfaceSample>& samples,
+  std::vector<Index>& quads, Monitor& monitor)
 {
   const NearestQuad nearest(mesh);
   std::vector<QuadHit> hits(samples.size());
   quads.resize(samples.size(), -1);
-  parallelFor(0, static_cast<std::int64_t>(hits.size()), 64,
+  parallelForUntilCancelled(0, static_cast<std::int64_t>(hits.size()), 256, monitor,
     [&](std::int64_t first, std::int64_t last)
     {
       for (std::int64_t i = first; i < last; ++i)

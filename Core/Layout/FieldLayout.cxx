@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace bsr
 {
@@ -17,6 +18,7 @@ constexpr double WeakCost = 40.0; ///< of a layout: a still finer map may do bet
 constexpr double BadCost = 60.0;  ///< of a layout: paired triangles may do better
 constexpr double MostMiss = 0.1;  ///< of the count; beyond, other roads are taken
 constexpr double MissCost = 30.0;
+constexpr double Fewer = 0.9;  ///< folds of a map of twice the quads, or it is no use
 constexpr int MostFine = 6000; ///< quads of a map to be made coarser
 
 /// One component and what is wanted of it.
@@ -31,6 +33,12 @@ struct Task
   const FieldLayoutOptions& Options;
 };
 
+/// Many handles on few quads leave no room for a map.
+bool crowded(const Task& task)
+{
+  return -6 * task.Euler >= task.Quads;
+}
+
 /// The best layout so far.
 struct Candidates
 {
@@ -38,7 +46,18 @@ struct Candidates
   double Cost = std::numeric_limits<double>::infinity();
   LayoutStage Stage = LayoutStage::Parametrized;
   bool Folded = true;
-  bool NoMaps = false; ///< it is no use to try finer maps
+  bool NoMaps = false;                             ///< it is no use to try finer maps
+  int MostFolds = std::numeric_limits<int>::max(); ///< of the next finer map, or it is no use
+
+  /// Takes what a road by maps says about finer ones.
+  void note(const ParametrizedLayout& found)
+  {
+    this->NoMaps = found.Hopeless;
+    if (found.Draft.Mesh.Quads.empty() && found.Folds > 0)
+    {
+      this->MostFolds = static_cast<int>(Fewer * found.Folds);
+    }
+  }
 
   /// Nothing yet, or folded quads or vertices of too many.
   bool unsound() const
@@ -96,13 +115,13 @@ Status coarsenTo(const Task& task, LayoutDraft& draft, Monitor& monitor)
 Status coarsenedRoad(const Task& task, int fine, Candidates& best, Monitor& monitor)
 {
   SubMonitor first(monitor, 0.0, 0.6);
-  auto found = parametrizedLayout(
-    task.Surface, task.Reference, task.Size, {fine, task.Options.Seed, true}, first);
+  auto found = parametrizedLayout(task.Surface, task.Reference, task.Size,
+    {fine, task.Options.Seed, true, best.MostFolds}, first);
   if (!found)
   {
     return found.status();
   }
-  best.NoMaps = found->Hopeless;
+  best.note(*found);
   if (found->Draft.Mesh.Quads.empty())
   {
     return Status::ok();
@@ -120,8 +139,9 @@ Status coarsenedRoad(const Task& task, int fine, Candidates& best, Monitor& moni
 Status pairedDraft(const Task& task, int quads, LayoutDraft& draft, Monitor& monitor)
 {
   TriangleSurface fine = task.Surface;
-  // Bending is seen on triangles as fine as those of the surface; finer ones would only cost time.
-  const int measured = std::clamp(task.Surface.faces() / 40, task.Quads, quads);
+  // Bending is seen on triangles about as fine as those of the surface; finer ones only cost time.
+  const int measured =
+    std::clamp(task.Surface.faces() / (crowded(task) ? 40 : 15), task.Quads, quads);
   auto sizing = Sizing::measured(
     task.Surface, task.Reference, measured, task.Options.Kind, task.Options.Field, monitor);
   if (!sizing)
@@ -181,13 +201,13 @@ bool goesOn(const Status& status)
 Status parametrizedRoad(const Task& task, Candidates& best, Monitor& monitor)
 {
   SubMonitor first(monitor, 0.0, 0.9);
-  auto found = parametrizedLayout(
-    task.Surface, task.Reference, task.Size, {task.Quads, task.Options.Seed, false}, first);
+  auto found = parametrizedLayout(task.Surface, task.Reference, task.Size,
+    {task.Quads, task.Options.Seed, false, best.MostFolds}, first);
   if (!found)
   {
     return found.status();
   }
-  best.NoMaps = found->Hopeless;
+  best.note(*found);
   if (found->Draft.Mesh.Quads.empty())
   {
     return Status::ok();
@@ -211,8 +231,7 @@ Status parametrizedRoad(const Task& task, Candidates& best, Monitor& monitor)
 /// False: cancelled.
 bool bestLayout(const Task& task, Candidates& best, Monitor& monitor)
 {
-  // Many handles on few quads leave no room for a map.
-  if (-6 * task.Euler < task.Quads)
+  if (!crowded(task))
   {
     SubMonitor first(monitor, 0.0, 0.4);
     if (!goesOn(parametrizedRoad(task, best, first)))

@@ -22,7 +22,7 @@ constexpr double FewerTriangles = 16.0; ///< a quad, of many to be made coarser
 constexpr double GoodCost = 8.0;        ///< no other field is tried then
 constexpr int MostCompared = 1500; ///< quads more, of a layout to be made coarser, are not compared
 constexpr int MostAttempts = 5;    ///< with each field
-constexpr int MostFailures = 6;    ///< before the first layout
+constexpr int MostFailures = 4;    ///< before the first layout
 constexpr double Shrink = 0.6;     ///< of cells where a map folds
 constexpr double Around = 2.0;     ///< cells around a fold that shrink
 constexpr double Crowded = 0.4;    ///< singular vertices a quad that leave no room for a map
@@ -255,6 +255,15 @@ Result<ParametrizedLayout> parametrizedLayout(const TriangleSurface& s,
       Trial trial = tryCells(mapper, cells, euler, quiet);
       LayoutDraft& draft = trial.Draft;
       const auto got = static_cast<int>(draft.Mesh.Quads.size());
+      if (i == 0 && attempt == 0)
+      {
+        best.Folds = static_cast<int>(trial.Squeezed.size());
+        best.Hopeless = got == 0 && best.Folds > options.MostFolds;
+        if (best.Hopeless)
+        {
+          return best;
+        }
+      }
       if (got == 0)
       {
         const auto folds = static_cast<double>(trial.Squeezed.size());

@@ -5,6 +5,8 @@
 #include "Layout/LayoutDraft.h"
 #include "Layout/Sizing.h"
 
+#include <limits>
+
 namespace bsr
 {
 struct ParametrizedOptions
@@ -12,12 +14,14 @@ struct ParametrizedOptions
   int Quads = 500;
   int Seed = 0;
   bool ToCoarsen = false; ///< the count does not matter, nor, of many quads, the cost
+  int MostFolds = std::numeric_limits<int>::max(); ///< of the first map; with more it is the last
 };
 
 struct ParametrizedLayout
 {
   LayoutDraft Draft;     ///< no quads: none was found, and another road must be taken
   bool Hopeless = false; ///< the maps fold in so many places that those of more quads will, too
+  int Folds = 0;         ///< triangles that the first map turned over or nearly so
 };
 
 /**

@@ -16,6 +16,7 @@ namespace
 {
 constexpr double GoodJacobian = 0.35;
 constexpr double MendedJacobian = 0.5; ///< points of worse quads look for better places
+constexpr double Bending = 0.2;        ///< what a place may gain by being put onto the surface
 constexpr double LeastPull = 0.35;     ///< of the surface on the points, where it draws them little
 constexpr double MorePull = 10.0; ///< by how far along the surface, relative to the longest edge
 
@@ -38,7 +39,7 @@ public:
   }
 
   /// One step of every vertex towards the rectangles its quads ask for.
-  void relaxOnce(double share, bool guarded, bool attracted)
+  void relaxOnce(double share, bool guarded, bool attracted, Monitor& monitor)
   {
     const std::vector<Vec3> before = this->Draft.Mesh.Points;
     this->measure();
@@ -54,7 +55,7 @@ public:
     std::vector<Vec3> moved = this->Draft.Mesh.Points;
     if (attracted && !this->Reference.Samples.empty())
     {
-      this->attract(moved);
+      this->attract(moved, monitor);
     }
     parallelFor(0, static_cast<std::int64_t>(moved.size()), 64,
       [&](std::int64_t first, std::int64_t last)
@@ -151,10 +152,10 @@ private:
   }
 
   /// Adds the way to where the surface draws the points: all of it where they slipped off.
-  void attract(std::vector<Vec3>& moved)
+  void attract(std::vector<Vec3>& moved, Monitor& monitor)
   {
     const std::vector<Vec3> pull =
-      attraction(this->Draft.Mesh, this->Reference.Samples, this->Nearest);
+      attraction(this->Draft.Mesh, this->Reference.Samples, this->Nearest, monitor);
     const std::vector<PointFrame> frames = pointFrames(this->Draft.Mesh);
     for (std::size_t v = 0; v < moved.size(); ++v)
     {
@@ -250,7 +251,7 @@ private:
         const double angle = k * M_PI / 4.0;
         p = from + step * (std::cos(angle) * x + std::sin(angle) * y);
         double w = this->worst(v);
-        if (w > best || this->Draft.Kind[v] == VertexKind::Crease)
+        if (w > best - Bending || this->Draft.Kind[v] == VertexKind::Crease)
         {
           p = this->onSurface(v, p, frame);
           w = this->worst(v);
@@ -368,7 +369,7 @@ Status relaxLayout(LayoutDraft& draft, const ReferenceSurface& reference, int it
     }
     for (int i = 0; i < iterations; ++i)
     {
-      relaxer.relaxOnce(0.7, guarded, i % 2 == 0);
+      relaxer.relaxOnce(0.7, guarded, i % 2 == 0, monitor);
       if (monitor.cancelled())
       {
         return Status::cancelled();

@@ -283,8 +283,9 @@ TEST(QuadRemesh, TheSurfaceDrawsPointsThatSlippedOff)
   {
     samples.push_back({Vec3(0.05 + 0.1 * (i % 10), 0.05 + 0.1 * (i / 10), 0), Vec3(0, 0, 1)});
   }
+  Monitor monitor;
   std::vector<Index> quads;
-  for (const Vec3& pull : attraction(square, samples, quads))
+  for (const Vec3& pull : attraction(square, samples, quads, monitor))
   {
     EXPECT_LT(pull.norm(), 1e-12);
   }
@@ -295,7 +296,7 @@ TEST(QuadRemesh, TheSurfaceDrawsPointsThatSlippedOff)
     samples.push_back({p, Vec3(0, 0, 1)});
     samples.push_back({p - Vec3(0, 3, 0.2), Vec3(0, 0, -1)});
   }
-  const std::vector<Vec3> pull = attraction(square, samples, quads);
+  const std::vector<Vec3> pull = attraction(square, samples, quads, monitor);
   EXPECT_LT(pull[0].norm() + pull[1].norm(), 1e-12);
   EXPECT_GT(pull[2].y(), 0.1);
   EXPECT_GT(pull[3].y(), 0.1);
