@@ -10,6 +10,10 @@ namespace bsr
 namespace
 {
 constexpr int Folds = 4;
+/// Correlation of neighboring residuals below which noise is white, and above which it is not.
+constexpr double White = 0.2;
+constexpr double Correlated = 0.5;
+constexpr double Slack = 1.5; ///< of the prediction's error, by the correlation
 
 int foldOf(const FitPoint& p)
 {
@@ -46,6 +50,94 @@ double neighborCorrelation(
     square += r[i].Normal * r[i].Normal;
   }
   return square > 0.0 ? std::clamp(product / square, 0.0, 1.0) : 0.0;
+}
+
+/// Root mean square over the surface of the distance of two nets along the normal.
+double change(const PatchNet& net, const NetPoints& from, const NetPoints& to)
+{
+  constexpr int Grid = 4;
+  const NetEvaluator before(net, from);
+  const NetEvaluator after(net, to);
+  std::vector<BasisValues> basis;
+  for (int i = 0; i < Grid; ++i)
+  {
+    basis.push_back(after.basis((i + 0.5) / Grid));
+  }
+  double squares = 0.0;
+  double area = 0.0;
+  for (Index p = 0; p < net.patches(); ++p)
+  {
+    for (int k = 0; k < Grid * Grid; ++k)
+    {
+      const SurfacePoint a = before.at(p, basis[k % Grid], basis[k / Grid]);
+      const SurfacePoint b = after.at(p, basis[k % Grid], basis[k / Grid]);
+      const Vec3 normal = b.normal();
+      const double size = normal.norm();
+      const double d = size > 0.0 ? (b.Point - a.Point).dot(normal) / size : 0.0;
+      squares += size * d * d;
+      area += size;
+    }
+  }
+  return area > 0.0 ? std::sqrt(squares / area) : 0.0;
+}
+
+/// log2 of K where changes of the surface between K and 2 K stop falling steeply, at most `most`.
+Result<double> whereRoughnessBegins(const PatchNet& net, FitSolver& solver,
+  const FitEquations& equations, double lambda, double most, Monitor& monitor)
+{
+  constexpr double Steepness = 0.25; ///< log2 of the change an octave of K
+  std::vector<double> changes;       ///< log2, from octave i - 1 to i
+  NetPoints last;
+  double slope = 0.0;
+  for (int octave = -1; octave <= most + 2.0; ++octave)
+  {
+    if (monitor.cancelled())
+    {
+      return Status::cancelled();
+    }
+    auto surface = solver.solveRoughly(equations.blocks(net, lambda, std::exp2(octave)));
+    if (!surface)
+    {
+      return surface.status();
+    }
+    if (last.rows() > 0)
+    {
+      changes.push_back(std::log2(std::max(change(net, last, *surface), 1e-300)));
+    }
+    last = std::move(*surface);
+    if (changes.size() < 3)
+    {
+      continue;
+    }
+    // Over two octaves; its middle is the octave before the last, and half of a change's width.
+    const double next = 0.5 * (changes.back() - changes[changes.size() - 3]);
+    const double middle = octave - 1.5;
+    if (next > -Steepness)
+    {
+      const double step = changes.size() > 3 ? (next + Steepness) / (next - slope) : 0.0;
+      return std::min(middle - step, most);
+    }
+    slope = next;
+  }
+  return most;
+}
+
+/// The least K whose error is within a limit, between the scores by powers; 0 where all are.
+double fewestFor(const std::vector<BalanceScore>& scores, double limit)
+{
+  std::size_t i = 0;
+  while (scores[i].Error > limit)
+  {
+    ++i;
+  }
+  if (i == 0)
+  {
+    return 0.0;
+  }
+  const BalanceScore& a = scores[i - 1];
+  const BalanceScore& b = scores[i];
+  const double t = std::log(a.Error / limit) / std::log(a.Error / std::max(b.Error, 1e-300));
+  return a.DataWeight * std::pow(b.DataWeight / a.DataWeight, std::clamp(t, 0.0, 1.0));
 }
 
 struct Fold
@@ -127,10 +219,15 @@ Result<std::vector<BalanceScore>> scanDataWeight(const PatchNet& net, FitSolver&
     return surface.status();
   }
   const double correlation = neighborCorrelation(net, *surface, points);
-  const double limit = scores[least].Error * (1.0 + 0.5 * correlation);
-  const auto chosen = std::find_if(
-    scores.begin(), scores.end(), [limit](const BalanceScore& s) { return s.Error <= limit; });
-  best = chosen->DataWeight;
+  const double most = std::log2(best);
+  auto begin = whereRoughnessBegins(net, solver, equations, lambda, most, monitor);
+  if (!begin)
+  {
+    return begin.status();
+  }
+  const double share = std::clamp((correlation - White) / (Correlated - White), 0.0, 1.0);
+  const double fewest = fewestFor(scores, scores[least].Error * (1.0 + Slack * correlation));
+  best = std::max(std::exp2(most + share * (*begin - most)), fewest);
   return scores;
 }
 } // namespace bsr

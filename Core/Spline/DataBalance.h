@@ -16,10 +16,14 @@ struct BalanceScore
  * left out in turn and predicted from the rest, for each K of a logarithmic grid. Regions, because
  * the roughness of CT surfaces is correlated over several voxels: single left-out points would be
  * predicted by neighbors with the same error, and the noise be followed.
- * What is correlated over more than a region still looks like shape; so where the residuals of
- * neighbors are correlated, the smoothest K is taken whose error is up to a half above the least;
- * not so without `correlatedNoise`: then what is correlated is the shape that the patches miss.
- * Returns the scores, increasing in K; `best` is set to the K chosen.
+ * What is correlated over more than a region still looks like shape. So where the residuals of
+ * neighbors are correlated, a second criterion bounds K from above: the change of the surface from
+ * K to 2 K. It falls steeply while shape is gained (as K^-1/2) and hardly once roughness is
+ * followed, whatever its strength and range; K is where it falls by less than a quarter of an
+ * octave an octave. That place is the same length on the surface for any number of patches. (A
+ * continuous relative of the quasi-optimality criterion of Tikhonov and Glasko, which looks for the
+ * least change.) Not so without `correlatedNoise`: then what is correlated is the shape that the
+ * patches miss. Returns the scores, increasing in K; `best` is set to the K chosen.
  */
 Result<std::vector<BalanceScore>> scanDataWeight(const PatchNet& net, FitSolver& solver,
   const FitEquations& equations, const std::vector<FitPoint>& points, double lambda,

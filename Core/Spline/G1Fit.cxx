@@ -18,6 +18,9 @@ namespace
 {
 /// Inner points that cover less of the layout are no lumen's.
 constexpr double LeastCoverage = 0.4;
+/// Of the outer shell's balance of data and fairing. The roughness is the same, but the inner wall
+/// is rounder, and the difference to the outer one that is faired holds the roughness of both.
+constexpr double InnerBalance = 2.0;
 
 std::unique_ptr<FitSolver> makeSolver(const QuadComplex& complex, const PatchNet& net,
   Continuity continuity, const Creases& creases, SplineSpace& space)
@@ -176,6 +179,10 @@ private:
         // Where the lumen's wall has few points it follows the outer wall.
         shellOptions.RestShape = &shells[0].Net;
         this->gaugeWall(net, shells[0], points, shellOptions);
+        if (this->Options.CorrelatedNoise && this->Options.DataWeight == 0.0)
+        {
+          shellOptions.DataWeight = InnerBalance * shells[0].Balance;
+        }
       }
       auto fit = fitShell(layout, *solver, std::move(points),
         borderSamples(this->Input, this->Cut, complex, this->Full.Points, side == 1), shellOptions,

@@ -66,6 +66,7 @@ public:
     {
       return s;
     }
+    this->Result_.Balance = this->K;
     for (int i = 0; i < this->Options.ExtraPasses; ++i)
     {
       if (Status s = this->pass(schedule.back(), 4.685); !s)

@@ -40,6 +40,7 @@ struct ShellFitResult
   NetPoints Net;
   std::vector<FitPoint> Points; ///< with final parameters and weights, sorted by patch
   double DataWeight = 0.0;      ///< K used
+  double Balance = 0.0;         ///< K before folds made it smaller
   double RobustScale = 0.0;     ///< sigma of the residuals, world units
   int Folded = 0;               ///< patches still folded at the end
   int FoldedWalls = 0;          ///< ruled walls to the outer shell still folded at the end
