@@ -94,6 +94,55 @@ TEST(G1Fit, BalanceFollowsTheNoise)
   EXPECT_LE(deviation(noisy.Model, toSphere, Shell::Outer).first, 2.5e-3);
 }
 
+/// Roughness of a wavelength: a sum of plane waves in directions of their own.
+double roughness(const Vec3& p, double wavelength)
+{
+  constexpr int Waves = 40;
+  double sum = 0.0;
+  for (int i = 0; i < Waves; ++i)
+  {
+    const double z = (2.0 * i + 1.0) / Waves - 1.0;
+    const double phi = 2.39996 * i; // the golden angle
+    const Vec3 k(std::sqrt(1.0 - z * z) * std::cos(phi), std::sqrt(1.0 - z * z) * std::sin(phi), z);
+    sum += std::cos(2.0 * M_PI / wavelength * k.dot(p) + 1.7 * i * i);
+  }
+  return sum * std::sqrt(2.0 / Waves);
+}
+
+TEST(G1Fit, MorePatchesFollowNoMoreRoughness)
+{
+  // Of all lengths down to the spacing of the points, as that of CT surfaces: what were long only
+  // could as well be shape.
+  const auto rough = [](const Vec3& p)
+  {
+    const Vec3 on = toSphere(p);
+    double sum = 0.0;
+    for (const double wavelength : {0.2, 0.14, 0.1, 0.07, 0.05})
+    {
+      sum += 0.004 * roughness(on, wavelength);
+    }
+    return Vec3((1.0 + sum) * on);
+  };
+  double rms[2] = {0.0, 0.0};
+  double weight[2] = {0.0, 0.0};
+  double patches[2] = {0.0, 0.0};
+  for (int i = 0; i < 2; ++i)
+  {
+    const QuadMesh m = meshes::sphere(2 + i);
+    const G1FitResult r = fitted(sample(m, i == 0 ? 16 : 8, rough, 0.001), m, {});
+    rms[i] = deviation(r.Model, toSphere, Shell::Outer).first;
+    weight[i] = r.Shells[0].DataWeight;
+    patches[i] = static_cast<double>(m.Quads.size());
+    std::printf("  %g patches: rms %.4f, K %.3g\n", patches[i], rms[i], weight[i]);
+  }
+  EXPECT_LE(rms[0], 0.004); // of 0.009
+  EXPECT_LE(rms[1], 1.2 * rms[0]);
+  // K n^2 is the same: fairing of the same length.
+  const double ratio = weight[0] / weight[1] / std::pow(patches[1] / patches[0], 2.0);
+  EXPECT_GE(ratio, 0.4);
+  EXPECT_LE(ratio, 2.5);
+}
+
 TEST(G1Fit, FullSpaceIsFiveTimesCloserThanTheVertexSpace)
 {
   const QuadMesh m = meshes::torus(12, 8);
