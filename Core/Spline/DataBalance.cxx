@@ -13,7 +13,8 @@ constexpr int Folds = 4;
 /// Correlation of neighboring residuals below which noise is white, and above which it is not.
 constexpr double White = 0.2;
 constexpr double Correlated = 0.5;
-constexpr double Slack = 1.5; ///< of the prediction's error, by the correlation
+constexpr double Slack = 1.5;       ///< of the prediction's error, by the correlation
+constexpr double CreaseSlack = 0.5; ///< the same without continuous tangent planes
 
 int foldOf(const FitPoint& p)
 {
@@ -169,7 +170,7 @@ Fold makeFold(
 
 Result<std::vector<BalanceScore>> scanDataWeight(const PatchNet& net, FitSolver& solver,
   const FitEquations& equations, const std::vector<FitPoint>& points, double lambda,
-  bool correlatedNoise, Monitor& monitor, double& best)
+  bool correlatedNoise, bool creases, Monitor& monitor, double& best)
 {
   std::vector<BalanceScore> scores;
   for (const double k : {10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 1e5})
@@ -219,6 +220,12 @@ Result<std::vector<BalanceScore>> scanDataWeight(const PatchNet& net, FitSolver&
     return surface.status();
   }
   const double correlation = neighborCorrelation(net, *surface, points);
+  if (creases)
+  {
+    best = std::max(fewestFor(scores, scores[least].Error * (1.0 + CreaseSlack * correlation)),
+      scores.front().DataWeight);
+    return scores;
+  }
   const double most = std::log2(best);
   auto begin = whereRoughnessBegins(net, solver, equations, lambda, most, monitor);
   if (!begin)

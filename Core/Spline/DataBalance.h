@@ -22,10 +22,12 @@ struct BalanceScore
  * followed, whatever its strength and range; K is where it falls by less than a quarter of an
  * octave an octave. That place is the same length on the surface for any number of patches. (A
  * continuous relative of the quasi-optimality criterion of Tikhonov and Glasko, which looks for the
- * least change.) Not so without `correlatedNoise`: then what is correlated is the shape that the
+ * least change.) Where patches are joined without tangent planes (`creases`), edges that fairing
+ * does not reach drown that: there K is the least whose prediction is at most half as much worse
+ * than the best. Not so without `correlatedNoise`: then what is correlated is the shape that the
  * patches miss. Returns the scores, increasing in K; `best` is set to the K chosen.
  */
 Result<std::vector<BalanceScore>> scanDataWeight(const PatchNet& net, FitSolver& solver,
   const FitEquations& equations, const std::vector<FitPoint>& points, double lambda,
-  bool correlatedNoise, Monitor& monitor, double& best);
+  bool correlatedNoise, bool creases, Monitor& monitor, double& best);
 } // namespace bsr

@@ -179,7 +179,7 @@ private:
         // Where the lumen's wall has few points it follows the outer wall.
         shellOptions.RestShape = &shells[0].Net;
         this->gaugeWall(net, shells[0], points, shellOptions);
-        if (this->Options.CorrelatedNoise && this->Options.DataWeight == 0.0)
+        if (this->Options.CorrelatedNoise && this->smooth() && this->Options.DataWeight == 0.0)
         {
           shellOptions.DataWeight = InnerBalance * shells[0].Balance;
         }
@@ -329,6 +329,13 @@ private:
     this->Out.Message += (this->Out.Message.empty() ? "" : " ") + text;
   }
 
+  /// Whether tangent planes are continuous between the patches.
+  bool smooth() const
+  {
+    return this->Options.Smoothness == Continuity::FullG1 ||
+           this->Options.Smoothness == Continuity::VertexG1;
+  }
+
   ShellFitOptions shellOptions() const
   {
     ShellFitOptions o;
@@ -336,6 +343,7 @@ private:
     o.Correction = this->Options.Correction;
     o.DataWeight = this->Options.DataWeight;
     o.CorrelatedNoise = this->Options.CorrelatedNoise;
+    o.Creases = !this->smooth();
     o.MostPasses = this->Options.CorrelatedNoise ? 0 : 40; // exact points: their parameters count
     o.Robust = this->Options.Robust;
     o.Reassign = this->Options.Reassign;

@@ -277,7 +277,7 @@ private:
     }
     this->assemble();
     auto scores = scanDataWeight(this->Net, this->Solver, this->Equations, this->Points, lambda,
-      this->Options.CorrelatedNoise, this->Watch, this->K);
+      this->Options.CorrelatedNoise, this->Options.Creases, this->Watch, this->K);
     if (!scores)
     {
       return scores.status();

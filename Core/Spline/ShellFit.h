@@ -23,6 +23,7 @@ struct ShellFitOptions
   CorrectionMethod Correction = CorrectionMethod::Taylor;
   double DataWeight = 0.0;     ///< K: reference points a patch; 0: found by cross-validation
   bool CorrelatedNoise = true; ///< the points' roughness extends over neighbors (CT surfaces)
+  bool Creases = false;        ///< the patches' tangent planes are not continuous
   bool Robust = true;          ///< weigh outliers down (Tukey)
   bool Reassign = true;        ///< points may move on to neighboring patches
   int ExtraPasses = 2;         ///< repetitions of the last pass
