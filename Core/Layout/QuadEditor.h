@@ -25,7 +25,7 @@ public:
   std::vector<Index> Region;              ///< per quad
   std::vector<std::vector<Index>> Around; ///< quads at each vertex
   std::vector<std::uint8_t> Rim;          ///< per vertex: on a boundary
-  int MostEdges = 7; ///< of a vertex, where no operation has to start from more
+  int MostEdges = 7;     ///< of a vertex, where no operation has to start from more
   int LeastRimEdges = 3; ///< of a vertex of a boundary after rotate()
 
   bool alive(Index quad) const { return this->Quads[quad][0] >= 0; }
