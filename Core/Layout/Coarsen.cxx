@@ -82,8 +82,8 @@ public:
         {
           return s;
         }
-        if (this->count() > FarOff * most && before - this->count() < 0.5 * (before - next) &&
-            &bound != &bounds.back())
+        if (this->crowded() && this->count() > FarOff * most &&
+            before - this->count() < 0.5 * (before - next) && &bound != &bounds.back())
         {
           break; // no use to be strict so far from the count
         }
