@@ -45,15 +45,21 @@ std::vector<double> cellsOf(
   return cells;
 }
 
-/// Is every piece of a region other than 0 a disc?
+/// Is every piece of a region other than 0 a disc with region 0 all around?
 bool regionsAreDiscs(const TriangleSurface& s)
 {
   UnionFind pieces(s.faces());
   for (Index h = 0; h < static_cast<Index>(s.Vertex.size()); ++h)
   {
-    if (s.Region[h / 3] == s.Region[s.Opposite[h] / 3])
+    const Index region = s.Region[h / 3];
+    const Index other = s.Region[s.Opposite[h] / 3];
+    if (region == other)
     {
       pieces.join(h / 3, s.Opposite[h] / 3);
+    }
+    else if (region != 0 && other != 0 && (region > 0 || other > 0))
+    {
+      return false;
     }
   }
   std::vector<int> euler(s.Region.size(), 0);

@@ -225,6 +225,19 @@ TEST(QuadRemesh, RegionsOfAnyShapeKeepTheirBorders)
   EXPECT_GE(border, 8);
 }
 
+TEST(QuadRemesh, RegionsThatTouchEachOtherAreNoCaps)
+{
+  // Eight discs that leave nothing else of the surface.
+  TriangleMesh mesh = bsrtest::icosphere(4);
+  for (const auto& t : mesh.Triangles)
+  {
+    const Vec3 p = mesh.Points[t[0]] + mesh.Points[t[1]] + mesh.Points[t[2]];
+    mesh.Region.push_back(
+      1 + (p.x() > 0.0 ? 1 : 0) + (p.y() > 0.0 ? 2 : 0) + (p.z() > 0.0 ? 4 : 0));
+  }
+  expectSound(remeshed(mesh, 100), 2, 0);
+}
+
 TEST(QuadRemesh, SpecksGetSixQuads)
 {
   TriangleMesh mesh;
