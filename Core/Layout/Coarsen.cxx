@@ -3,6 +3,7 @@
 #include "Common/Parallel.h"
 #include "Layout/AnnealCoarsener.h"
 #include "Layout/Chords.h"
+#include "Layout/LeastQuads.h"
 #include "Layout/LocalCoarsener.h"
 #include "Layout/NearestQuad.h"
 #include "Layout/RelaxLayout.h"
@@ -151,7 +152,7 @@ private:
   /// Where many handles leave no room, most quads would be mended over and over: only near the end.
   int mending() const { return !this->crowded() || this->count() < MostMended ? 2 : 0; }
 
-  bool crowded() const { return -6 * this->Euler >= this->O.Quads; }
+  bool crowded() const { return bsr::crowded(this->Euler, this->O.Quads); }
 
   int count() const { return static_cast<int>(this->D.Mesh.Quads.size()); }
 

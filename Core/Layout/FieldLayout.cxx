@@ -1,6 +1,7 @@
 #include "Layout/FieldLayout.h"
 
 #include "Layout/Coarsen.h"
+#include "Layout/LeastQuads.h"
 #include "Layout/PairTriangles.h"
 #include "Layout/ParametrizedLayout.h"
 #include "Layout/RelaxLayout.h"
@@ -32,12 +33,6 @@ struct Task
   int Loops; ///< of the boundary
   const FieldLayoutOptions& Options;
 };
-
-/// Many handles on few quads leave no room for a map.
-bool crowded(const Task& task)
-{
-  return -6 * task.Euler >= task.Quads;
-}
 
 /// The best layout so far.
 struct Candidates
@@ -140,8 +135,8 @@ Status pairedDraft(const Task& task, int quads, LayoutDraft& draft, Monitor& mon
 {
   TriangleSurface fine = task.Surface;
   // Bending is seen on triangles about as fine as those of the surface; finer ones only cost time.
-  const int measured =
-    std::clamp(task.Surface.faces() / (crowded(task) ? 40 : 15), task.Quads, quads);
+  const int measured = std::clamp(
+    task.Surface.faces() / (crowded(task.Euler, task.Quads) ? 40 : 15), task.Quads, quads);
   auto sizing = Sizing::measured(
     task.Surface, task.Reference, measured, task.Options.Kind, task.Options.Field, monitor);
   if (!sizing)
@@ -231,7 +226,7 @@ Status parametrizedRoad(const Task& task, Candidates& best, Monitor& monitor)
 /// False: cancelled.
 bool bestLayout(const Task& task, Candidates& best, Monitor& monitor)
 {
-  if (!crowded(task))
+  if (!crowded(task.Euler, task.Quads))
   {
     SubMonitor first(monitor, 0.0, 0.4);
     if (!goesOn(parametrizedRoad(task, best, first)))

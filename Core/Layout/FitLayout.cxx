@@ -2,6 +2,7 @@
 
 #include "Common/Parallel.h"
 #include "Common/SparseFactors.h"
+#include "Layout/LeastQuads.h"
 #include "Layout/NearestQuad.h"
 #include "Layout/RelaxLayout.h"
 
@@ -61,8 +62,8 @@ class Fitter
 public:
   Fitter(LayoutDraft& draft, const TriangleSurface& s)
       : D(draft),
-        Samples(
-          samplesOf(s, -6 * s.eulerCharacteristic() < static_cast<int>(draft.Mesh.Quads.size()))),
+        Samples(samplesOf(
+          s, !crowded(s.eulerCharacteristic(), static_cast<int>(draft.Mesh.Quads.size())))),
         Row(draft.Mesh.Points.size(), -1),
         Offset(draft.Mesh.Points.size(), 0.0)
   {

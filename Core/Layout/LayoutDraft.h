@@ -26,9 +26,10 @@ struct LayoutDraft
   /// Adds boundaries and region borders to the creases, and puts these in order.
   void completeCreases();
   /// Puts each point, by its kind, onto the side of the reference that its quads face.
-  /// `triangles`: those of the reference that the points were on last, or empty; kept up to date.
-  void project(const ReferenceSurface& reference, std::vector<Index>& triangles);
   void project(const ReferenceSurface& reference);
+  /// The same, faster. `triangles`: those of the reference that the points were on last, or empty;
+  /// kept up to date.
+  void project(const ReferenceSurface& reference, std::vector<Index>& triangles);
 };
 
 /// What the quads around a point tell of it.

@@ -15,4 +15,10 @@ namespace bsr
  * boundaries it is not reached, for it takes boundaries to be as long as helps.
  */
 int leastQuads(int euler, int boundaryLoops);
+
+/// Whether handles leave no room on so many quads: maps fold there, and shapes are poor.
+inline bool crowded(int euler, int quads)
+{
+  return -6 * euler >= quads;
+}
 } // namespace bsr
