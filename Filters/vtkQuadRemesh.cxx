@@ -125,6 +125,12 @@ void report(const bsr::QuadLayout& layout, vtkFieldData* field)
     stages.push_back(static_cast<double>(s));
   }
   bsr::addField(field, "LayoutStage", stages);
+  std::vector<double> followed;
+  for (bsr::FollowedFeatures f : layout.Followed)
+  {
+    followed.push_back(static_cast<double>(f));
+  }
+  bsr::addField(field, "FollowedFeatures", followed);
   const bsr::LayoutSeconds& s = layout.Seconds;
   addNamed(field, "StageSeconds",
     {{"Repair", s.Repair}, {"Decimation", s.Decimation}, {"Layout", s.Layout},

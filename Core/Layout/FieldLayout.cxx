@@ -249,6 +249,10 @@ bool bestLayout(const Task& task, Candidates& best, Monitor& monitor)
       done += 0.2;
     }
   }
+  if (task.Options.MapsOnly)
+  {
+    return true;
+  }
   if (best.Cost >= BadCost)
   {
     SubMonitor last(monitor, done, 1.0);

@@ -22,7 +22,8 @@ struct FieldLayoutOptions
   int Quads = 500;
   int Seed = 0;
   QuadSizing Kind = QuadSizing::Uniform;
-  Sizing::Field Field; ///< QuadSizing::Array only
+  Sizing::Field Field;   ///< QuadSizing::Array only
+  bool MapsOnly = false; ///< no pairs of triangles: Failed where no map gives a layout
 };
 
 struct FieldLayout

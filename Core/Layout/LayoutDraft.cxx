@@ -482,6 +482,17 @@ LayoutDistance layoutDistance(const QuadMesh& mesh, const TriangleSurface& s,
     total += weight[v];
   }
   d.Mean /= std::max(total, 1e-300);
+  if (!samples.empty() && !reference.Samples.empty())
+  {
+    // Points of large triangles tell little of what lies between them.
+    d.Mean = 0.0;
+    for (const SurfaceSample& sample : reference.Samples)
+    {
+      const double off = std::sqrt(tree.nearest(sample.Point).SquaredDistance);
+      d.Mean += off / static_cast<double>(reference.Samples.size());
+      d.Maximum = std::max(d.Maximum, off);
+    }
+  }
   d.Maximum = std::max(d.Maximum, *std::max_element(there.begin(), there.end()));
   return d;
 }

@@ -67,6 +67,37 @@ Status checkSizeField(const TriangleMesh& mesh, const QuadRemeshOptions& o)
   return Status::ok();
 }
 
+/// Negative regions as numbers that are not in use (holes of surfaces are regions below 0): pairs
+/// of new and old ones.
+std::vector<std::array<Index, 2>> renumberRegions(std::vector<Index>& regions)
+{
+  std::vector<std::array<Index, 2>> renamed;
+  if (std::none_of(regions.begin(), regions.end(), [](Index r) { return r < 0; }))
+  {
+    return renamed;
+  }
+  std::vector<Index> used = regions;
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  Index next = 1;
+  for (std::size_t i = 0; i < used.size() && used[i] < 0; ++i, ++next)
+  {
+    while (std::binary_search(used.begin(), used.end(), next))
+    {
+      ++next;
+    }
+    renamed.push_back({next, used[i]});
+  }
+  for (Index& r : regions)
+  {
+    for (std::size_t i = 0; r < 0 && i < renamed.size(); ++i)
+    {
+      r = r == renamed[i][1] ? renamed[i][0] : r;
+    }
+  }
+  return renamed;
+}
+
 /// The value at the nearest point of the mesh.
 Sizing::Field sizeField(const TriangleMesh& mesh, const QuadRemeshOptions& o)
 {
@@ -90,6 +121,26 @@ Sizing::Field sizeField(const TriangleMesh& mesh, const QuadRemeshOptions& o)
   return [tree, value = std::move(value)](const Vec3& p)
   { return value[tree->nearest(p).Triangle]; };
 }
+
+/// Passes progress on only where it grows: how many roads are tried is not known before.
+class GrowingMonitor : public Monitor
+{
+public:
+  explicit GrowingMonitor(Monitor& parent) : Parent(parent) {}
+  void progress(double share) override
+  {
+    if (share > this->Told)
+    {
+      this->Told = share;
+      this->Parent.progress(share);
+    }
+  }
+  bool cancelled() override { return this->Parent.cancelled(); }
+
+private:
+  Monitor& Parent;
+  double Told = 0.0;
+};
 
 /// Wall time since the last call.
 class Clock
@@ -197,8 +248,9 @@ Result<FieldLayout> layOut(TriangleSurface& s, const ReferenceSurface& reference
                  : Result<FieldLayout>(draft.status());
   }
   layout.Surface = {s.toMesh(), {}, {}, {}};
-  auto found =
-    fieldLayout(s, reference, *sizing, {quads, options.Seed, options.Sizing, field}, laying);
+  FollowedFeatures& followed = layout.Followed.back();
+  auto found = layoutOfFeatures(s, reference, *sizing, {quads, options.Seed, options.Sizing, field},
+    sizeOf(s).Least, followed, laying);
   SubMonitor moving(monitor, 0.9, 0.97);
   SubMonitor fitting(monitor, options.FitMoves ? 0.97 : 0.9, 1.0);
   if (found && options.FitMoves)
@@ -262,6 +314,12 @@ Status layOutComponent(TriangleSurface& s, int quads, bool last, const QuadRemes
   {
     return Status::cancelled();
   }
+  TriangleMesh whole; // with the regions whose borders are not followed
+  if (std::any_of(s.Region.begin(), s.Region.end(), [](Index r) { return r > 0; }))
+  {
+    whole = s.toMesh();
+  }
+  layout.Followed.push_back(dropHopelessCreases(s, quads));
   if (!speck)
   {
     SubMonitor decimating(monitor, 0.0, 0.4);
@@ -302,6 +360,10 @@ Status layOutComponent(TriangleSurface& s, int quads, bool last, const QuadRemes
   {
     return Status::cancelled();
   }
+  if (layout.Followed.back() == FollowedFeatures::None && !whole.Triangles.empty())
+  {
+    takeRegions(found->Draft.Mesh, whole);
+  }
   layout.Stages.push_back(found->Stage);
   layout.Mesh = std::move(found->Draft.Mesh);
   layout.Seconds.Measure += clock.lap();
@@ -319,6 +381,7 @@ void append(QuadLayout& all, const QuadLayout& part, double share)
   append(all.Surface, part.Surface, cells);
   append(all.Mesh, part.Mesh);
   all.Morse.insert(all.Morse.end(), part.Morse.begin(), part.Morse.end());
+  all.Followed.insert(all.Followed.end(), part.Followed.begin(), part.Followed.end());
   all.Stages.insert(all.Stages.end(), part.Stages.begin(), part.Stages.end());
   all.MinimumQuads += part.MinimumQuads;
   all.Distance.Maximum = std::max(all.Distance.Maximum, part.Distance.Maximum);
@@ -405,8 +468,9 @@ Status layOutAll(std::vector<TriangleSurface>& surfaces, const QuadRemeshOptions
 } // namespace
 
 Result<QuadLayout> quadRemesh(
-  const TriangleMesh& mesh, const QuadRemeshOptions& options, Monitor& monitor)
+  const TriangleMesh& mesh, const QuadRemeshOptions& options, Monitor& caller)
 {
+  GrowingMonitor monitor(caller);
   if (Status s = checkOptions(options); !s)
   {
     return s;
@@ -424,9 +488,12 @@ Result<QuadLayout> quadRemesh(
   building.SmallestShare = options.SmallestComponent / options.NumberOfQuads;
   SubMonitor repairing(monitor, 0.0, 0.1);
   SubMonitor rest(monitor, 0.1, 1.0);
-  auto surfaces =
-    morse ? buildSurfaces({mesh.Points, mesh.Triangles, {}}, building, layout.Repairs, repairing)
-          : buildSurfaces(mesh, building, layout.Repairs, repairing);
+  std::vector<Index> regions = morse ? std::vector<Index>() : mesh.Region;
+  const std::vector<std::array<Index, 2>> renamed = renumberRegions(regions);
+  auto surfaces = morse || !renamed.empty()
+                    ? buildSurfaces({mesh.Points, mesh.Triangles, std::move(regions)}, building,
+                        layout.Repairs, repairing)
+                    : buildSurfaces(mesh, building, layout.Repairs, repairing);
   if (!surfaces)
   {
     return surfaces.status();
@@ -437,6 +504,12 @@ Result<QuadLayout> quadRemesh(
     return status;
   }
   clock.lap();
+  for (Index& region : layout.Mesh.Region)
+  {
+    const auto old = std::find_if(
+      renamed.begin(), renamed.end(), [&](const auto& pair) { return pair[0] == region; });
+    region = old == renamed.end() ? region : (*old)[1];
+  }
   layout.Report = checkLayout(layout.Mesh);
   monitor.progress(1.0);
   layout.Seconds.Measure += clock.lap();

@@ -2,7 +2,7 @@
 
 #include "Common/Monitor.h"
 #include "Common/Status.h"
-#include "Layout/FieldLayout.h"
+#include "Layout/FeatureFallback.h"
 #include "Layout/LeastQuads.h"
 #include "Layout/MorseLayout.h"
 #include "Mesh/BuildSurface.h"
@@ -45,8 +45,9 @@ struct QuadLayout
 {
   QuadMesh Mesh;
   LayoutReport Report;
-  LayoutDistance Distance;         ///< in world units, to the input
-  std::vector<LayoutStage> Stages; ///< per component of the input
+  LayoutDistance Distance;                ///< in world units, to the input
+  std::vector<LayoutStage> Stages;        ///< per component of the input
+  std::vector<FollowedFeatures> Followed; ///< per component
   RepairReport Repairs;
   LayoutSeconds Seconds;
   int MinimumQuads = 0;           ///< leastQuads of all components together
