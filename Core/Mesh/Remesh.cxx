@@ -11,9 +11,14 @@ namespace bsr
 namespace
 {
 constexpr int Regular = 6; ///< edges at a vertex
+/// Relative length of an edge beyond which the longest edges are split first.
+constexpr double Coarse = 6.0;
+constexpr Index MostSplits = 300000; ///< a round, however long and many needles are
 
 class Remesher
 {
+  using LongEdge = std::pair<double, Index>; ///< length; half-edge, negative: the first comes first
+
 public:
   Remesher(TriangleSurface& s, const ReferenceSurface& reference, Monitor& monitor)
       : S(s), Reference(reference), Ask(monitor), Wanted(s.Points.size())
@@ -37,6 +42,16 @@ public:
 
 private:
   bool splitLong()
+  {
+    bool coarse = false;
+    for (Index h = 0; h < static_cast<Index>(this->S.Vertex.size()); ++h)
+    {
+      coarse = coarse || (this->S.Vertex[h] >= 0 && this->real(h) && this->relative(h) > Coarse);
+    }
+    return coarse ? this->splitLongestFirst() : this->splitInPasses();
+  }
+
+  bool splitInPasses()
   {
     for (int pass = 0; pass < 12; ++pass)
     {
@@ -70,6 +85,62 @@ private:
       }
     }
     return true;
+  }
+
+  /// The longest edge first: it is the longest of both its triangles, so that angles are no worse
+  /// than halved (Rivara 1984) and no vertex grows a fan of needles.
+  bool splitLongestFirst()
+  {
+    std::vector<LongEdge> heap;
+    for (Index h = 0; h < static_cast<Index>(this->S.Vertex.size()); ++h)
+    {
+      this->addIfLong(h, heap);
+    }
+    std::make_heap(heap.begin(), heap.end());
+    const bool any = !heap.empty();
+    for (Index step = 0; !heap.empty() && step < MostSplits; ++step)
+    {
+      if (this->stopped(step))
+      {
+        return false;
+      }
+      std::pop_heap(heap.begin(), heap.end());
+      const auto [length, negative] = heap.back();
+      const Index h = -negative;
+      heap.pop_back();
+      if (this->length(h) != length)
+      {
+        continue; // another edge since
+      }
+      const double wanted = this->wanted(h);
+      const Index middle =
+        this->S.split(h, 0.5 * (this->S.Points[this->S.start(h)] + this->S.Points[this->S.end(h)]));
+      this->Wanted.push_back(wanted);
+      this->S.around(middle,
+        [&](Index x)
+        {
+          for (Index y : {x, TriangleSurface::next(x)}) // splits renumber the edges around
+          {
+            if (this->addIfLong(std::min(y, this->S.Opposite[y]), heap))
+            {
+              std::push_heap(heap.begin(), heap.end());
+            }
+          }
+        });
+    }
+    // Fans of needles have vertices of many edges.
+    return !any || this->flipToRegular();
+  }
+
+  bool addIfLong(Index h, std::vector<LongEdge>& heap) const
+  {
+    const bool any = this->S.Vertex[h] >= 0 && h < this->S.Opposite[h] && this->real(h) &&
+                     this->relative(h) > 4.0 / 3.0;
+    if (any)
+    {
+      heap.emplace_back(this->length(h), -h);
+    }
+    return any;
   }
 
   bool collapseShort()
