@@ -18,6 +18,7 @@
 #include <vtkPolyData.h>
 #include <vtkUnsignedCharArray.h>
 
+#include <algorithm>
 #include <chrono>
 
 vtkStandardNewMacro(vtkQuadRemesh);
@@ -203,6 +204,17 @@ int vtkQuadRemesh::RequestData(
     addArray<vtkIntArray>(output->GetCellData(), this->RegionArray.c_str(), layout->Mesh.Region);
   }
   report(*layout, output->GetFieldData());
+  if (const auto given = std::count_if(layout->Followed.begin(), layout->Followed.end(),
+        [](bsr::FollowedFeatures f) { return f != bsr::FollowedFeatures::All; });
+      given > 0)
+  {
+    vtkWarningMacro(
+      "Sharp edges or borders of regions leave no room for "
+      << this->NumberOfQuads << " quads and are not followed on " << given << " of "
+      << layout->Followed.size()
+      << " components (field array FollowedFeatures). More quads or a larger FeatureAngle give "
+         "them room.");
+  }
   if (this->Method == MORSE_SMALE)
   {
     reportMorse(*layout, output->GetFieldData());

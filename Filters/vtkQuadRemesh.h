@@ -36,12 +36,13 @@
  *   distance between surface and layout, both ways, in world units), `MeanDistance`,
  *   `MinScaledJacobian`, `MeanScaledJacobian`, `FlippedQuads`, `MeanAngleDeviation` and
  *   `MaxAngleDeviation` (degrees), `LayoutStage` (per component: 0 parametrized, 1 paired
- *   triangles, 2 Morse-Smale), `FollowedFeatures` (per component: 0 all creases,
- *   1 sharp edges are given up, as they leave no room for NumberOfQuads, 2 region borders, too), `StageSeconds` (Repair, Decimation, Layout, Measure), `Repairs`
- *   (MergedPoints, DegenerateFaces, DuplicateFaces, TurnedFaces, SplitVertices, CutEdges, Specks),
- *   `Seconds`; method MORSE_SMALE, per component: `EigenfunctionTaken` (place in the spectrum),
- *   `Eigenvalue`, `Minima`, `Saddles`, `Maxima`, `MorseCells` (before mending), `CancelledPairs`,
- *   `CellSubdivisions` (1: every cell was cut in 2 x 2, as there was no valid layout without).
+ *   triangles, 2 Morse-Smale), `FollowedFeatures` (per component: 0 all creases, 1 sharp edges are
+ *   given up, as they leave no room for NumberOfQuads, 2 region borders, too; above 0 with a
+ *   warning), `StageSeconds` (Repair, Decimation, Layout, Measure), `Repairs` (MergedPoints,
+ * DegenerateFaces, DuplicateFaces, TurnedFaces, SplitVertices, CutEdges, Specks), `Seconds`; method
+ * MORSE_SMALE, per component: `EigenfunctionTaken` (place in the spectrum), `Eigenvalue`, `Minima`,
+ * `Saddles`, `Maxima`, `MorseCells` (before mending), `CancelledPairs`, `CellSubdivisions` (1:
+ * every cell was cut in 2 x 2, as there was no valid layout without).
  *
  * Output port 1: the triangle surface the layout was found on (repaired and decimated;
  * MORSE_SMALE: remeshed evenly and cut along the paths), and with MORSE_SMALE

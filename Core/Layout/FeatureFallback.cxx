@@ -60,7 +60,6 @@ void dropRegions(TriangleSurface& s)
   }
   dropSharpEdges(s);
 }
-
 } // namespace
 
 void takeRegions(QuadMesh& quads, const TriangleMesh& mesh)
@@ -80,12 +79,14 @@ void takeRegions(QuadMesh& quads, const TriangleMesh& mesh)
 
 namespace
 {
-bool accepted(const LayoutDraft& draft, int quads, int least)
+/// Region borders are what regions are given for: they may cost as many quads again as asked for.
+bool accepted(const LayoutDraft& draft, int quads, int least, FollowedFeatures rung)
 {
+  const double miss = rung == FollowedFeatures::Regions ? 1.0 : 0.1;
   const LayoutReport report = checkLayout(draft.Mesh);
   const auto got = static_cast<double>(draft.Mesh.Quads.size());
   return report.Valid && report.Flipped == 0 && report.MaxValence <= 8 &&
-         (std::abs(got - quads) <= std::max(0.1 * quads, 2.0) ||
+         (std::abs(got - quads) <= std::max(miss * quads, 2.0) ||
            std::abs(got - least) <= 0.1 * least);
 }
 Result<FieldLayout> layoutOfRung(const TriangleSurface& s, const ReferenceSurface& reference,
@@ -142,10 +143,11 @@ Result<FieldLayout> layoutOfFeatures(const TriangleSurface& s, const ReferenceSu
     SubMonitor part(monitor, done, done + 0.4);
     done += 0.4;
     FieldLayoutOptions own = options;
-    own.MapsOnly = lengths.Border + lengths.Sharp > EasyLength;
+    const double sharp = rung == FollowedFeatures::All ? lengths.Sharp : 0.0;
+    own.MapsOnly = lengths.Border + sharp > EasyLength;
     auto found = layoutOfRung(s, reference, sizing, own, rung, part);
     const bool cancelled = !found && found.status().code() == StatusCode::Cancelled;
-    if (cancelled || (found && accepted(found->Draft, options.Quads, least)))
+    if (cancelled || (found && accepted(found->Draft, options.Quads, least, rung)))
     {
       followed = lengths.Sharp > 0.0 ? rung : followed;
       return found;

@@ -2,8 +2,10 @@
 #include "RandomShape.h"
 #include "vtkQuadRemesh.h"
 
+#include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
+#include <vtkCommand.h>
 #include <vtkDataArray.h>
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
@@ -145,6 +147,30 @@ TEST(QuadRemeshFilter, SaysWhatIsWrong)
   remesh->Update();
   EXPECT_TRUE(log.saidOnce("Sizes")) << log.text();
   EXPECT_EQ(remesh->GetOutput()->GetNumberOfCells(), 0);
+}
+
+TEST(QuadRemeshFilter, WarnsOfSharpEdgesWithoutRoom)
+{
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetThetaResolution(40);
+  sphere->SetPhiResolution(30);
+  vtkNew<vtkQuadRemesh> remesh;
+  remesh->SetInputConnection(sphere->GetOutputPort());
+  remesh->SetNumberOfQuads(60);
+  int warnings = 0;
+  vtkNew<vtkCallbackCommand> heard;
+  heard->SetClientData(&warnings);
+  heard->SetCallback(
+    [](vtkObject*, unsigned long, void* count, void*) { ++*static_cast<int*>(count); });
+  remesh->AddObserver(vtkCommand::WarningEvent, heard);
+  remesh->Update();
+  EXPECT_EQ(warnings, 0);
+  EXPECT_EQ(fieldValue(remesh->GetOutput(), "FollowedFeatures"), 0);
+  remesh->SetFeatureAngle(2.0); // every edge is sharp
+  remesh->Update();
+  EXPECT_EQ(warnings, 1);
+  EXPECT_EQ(fieldValue(remesh->GetOutput(), "FollowedFeatures"), 1);
+  expectClosedQuads(remesh->GetOutput());
 }
 
 TEST(QuadRemeshFilter, TakesPolygonsStripsAndUnusedPoints)
