@@ -14,8 +14,8 @@ constexpr double LeastGain = 1e-3;   ///< of the price, relative
 } // namespace
 
 AnnealCoarsener::AnnealCoarsener(const LayoutDraft& draft, const ReferenceSurface& reference,
-  const CoarsenOptions& options, const Bounds& bounds, double cell2)
-    : LocalCoarsener(draft, reference, options, bounds, cell2)
+  const CoarsenOptions& options, const Bounds& bounds, double cell2, Monitor& monitor)
+    : LocalCoarsener(draft, reference, options, bounds, cell2, monitor)
 {
   this->E.MostEdges = 8;
   this->E.LeastRimEdges = 2;

@@ -21,7 +21,7 @@ class AnnealCoarsener : public LocalCoarsener
 public:
   /// Vertices may have one edge more than in layouts that are not at their limit.
   AnnealCoarsener(const LayoutDraft& draft, const ReferenceSurface& reference,
-    const CoarsenOptions& options, const Bounds& bounds, double cell2);
+    const CoarsenOptions& options, const Bounds& bounds, double cell2, Monitor& monitor);
 
   /// Down to `target` quads, or as far as it goes. False: cancelled.
   bool annealTo(int target, Monitor& monitor);

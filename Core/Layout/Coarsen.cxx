@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace bsr
 {
@@ -108,7 +110,7 @@ private:
   {
     SubMonitor quiet(this->M, 0.0, 0.0);
     const int most = static_cast<int>(std::floor(this->O.Quads * (1.0 + this->O.Tolerance)));
-    AnnealCoarsener coarsener(this->D, this->Reference, this->O, bound, this->Cell2);
+    AnnealCoarsener coarsener(this->D, this->Reference, this->O, bound, this->Cell2, quiet);
     if (!coarsener.annealTo(most, quiet))
     {
       return Status::cancelled();
@@ -120,7 +122,7 @@ private:
       {
         return s;
       }
-      AnnealCoarsener last(this->D, this->Reference, this->O, bound, this->Cell2);
+      AnnealCoarsener last(this->D, this->Reference, this->O, bound, this->Cell2, quiet);
       if (!last.improve(quiet))
       {
         return Status::cancelled();
@@ -158,9 +160,9 @@ private:
 
   Status local(int target, const Bounds& bound)
   {
-    LocalCoarsener local(this->D, this->Reference, this->O, bound, this->Cell2);
     SubMonitor quiet(this->M, 0.0, 0.0);
     Monitor& m = quiet;
+    LocalCoarsener local(this->D, this->Reference, this->O, bound, this->Cell2, m);
     if (!local.collapseTo(target, bound.Cost, m) || !local.regularize(m))
     {
       return Status::cancelled();
@@ -287,23 +289,24 @@ private:
     return far <= bound.Distance || far <= this->farthest(this->D.Mesh);
   }
 
-  /// Largest distance of a sample, in sides of quads wanted there.
+  /// Largest distance of a sample, in sides of quads wanted there; infinite once cancelled.
   double farthest(const QuadMesh& mesh)
   {
     const NearestQuad nearest(mesh);
-    return parallelReduce<double>(
-      0, static_cast<std::int64_t>(this->Reference.Samples.size()), 64, 0.0,
-      [&](std::int64_t first, std::int64_t last)
-      {
-        double far = 0.0;
-        for (std::int64_t i = first; i < last; ++i)
+    std::vector<double> far(this->Reference.Samples.size(), 0.0);
+    const bool all =
+      parallelForUntilCancelled(0, static_cast<std::int64_t>(far.size()), 64, this->M,
+        [&](std::int64_t first, std::int64_t last)
         {
-          const double d2 = nearest.find(this->Reference.Samples[i].Point).SquaredDistance;
-          far = std::max(far, std::sqrt(d2) / this->SampleSides[i]);
-        }
-        return far;
-      },
-      [](double a, double b) { return std::max(a, b); });
+          for (std::int64_t i = first; i < last; ++i)
+          {
+            const double d2 = nearest.find(this->Reference.Samples[i].Point).SquaredDistance;
+            far[i] = std::sqrt(d2) / this->SampleSides[i];
+          }
+        });
+    return all ? std::accumulate(
+                   far.begin(), far.end(), 0.0, [](double a, double b) { return std::max(a, b); })
+               : std::numeric_limits<double>::infinity();
   }
 
   LayoutDraft& D;

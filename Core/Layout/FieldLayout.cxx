@@ -151,7 +151,7 @@ Status pairedDraft(const Task& task, int quads, LayoutDraft& draft, Monitor& mon
     return status;
   }
   draft = pairTriangles(fine);
-  return Status::ok();
+  return monitor.cancelled() ? Status::cancelled() : Status::ok();
 }
 
 /// By pairs of triangles, made coarser: this works for any surface.

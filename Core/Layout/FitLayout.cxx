@@ -228,6 +228,10 @@ private:
     Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(this->Rows);
     for (std::size_t i = 0; i < off.size(); ++i)
     {
+      if (i % 8192 == 0 && monitor.cancelled())
+      {
+        return false;
+      }
       if (this->Hit[i].Quad < 0)
       {
         continue;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace bsr
 {
@@ -31,8 +32,8 @@ public:
       return;
     }
     this->number();
-    this->cacheCombinations();
-    this->Usable = this->factor(this->Base, this->BaseKnown) && this->reduce();
+    this->Usable =
+      this->cacheCombinations() && this->factor(this->Base, this->BaseKnown) && this->reduce();
   }
 
   template <class Offer>
@@ -124,16 +125,22 @@ private:
     return out;
   }
 
-  void cacheCombinations()
+  /// False: cancelled.
+  bool cacheCombinations()
   {
     this->Corner.resize(2 * this->S.Vertex.size());
     for (Index h = 0; h < static_cast<Index>(this->S.Vertex.size()); ++h)
     {
+      if (h % 512 == 0 && this->M.cancelled())
+      {
+        return false;
+      }
       for (int c = 0; c < 2 && this->Topology.Field.Inside[h / 3]; ++c)
       {
         this->Corner[2 * h + c] = this->combination(h, c);
       }
     }
+    return true;
   }
 
   /// Gradients of the three hat functions of a triangle, in its own frame; twice the area.
@@ -168,7 +175,7 @@ private:
     }
     for (Index f = 0; f < this->S.faces(); ++f)
     {
-      if (f % 512 == 0 && this->M.cancelled())
+      if (f % 32 == 0 && this->M.cancelled())
       {
         return false;
       }
@@ -212,6 +219,10 @@ private:
       {
         for (const auto& [a, fa] : this->Corner[2 * (3 * f + i) + c])
         {
+          if (a >= this->Reals && this->Stiffened)
+          {
+            break; // whole unknowns come last
+          }
           for (int j = 0; j < 3; ++j)
           {
             const double w = weight * g[i].dot(g[j]) * fa;
@@ -228,7 +239,7 @@ private:
               {
                 ry.emplace_back(a, d - this->Reals, w * fd);
               }
-              else if (d >= this->Reals && !this->Stiffened)
+              else if (d >= this->Reals && d <= a)
               {
                 this->Hyy(a - this->Reals, d - this->Reals) += w * fd;
               }
@@ -303,37 +314,54 @@ private:
     {
       return false;
     }
-    this->Y = inverse * this->Pull;
-    std::vector<std::uint8_t> fixed(n, 0);
-    for (Eigen::Index step = 0; step < n; ++step)
+    Eigen::VectorXd y = inverse * this->Pull;
+    this->Y.resize(n);
+    std::vector<Eigen::Index> unknown(n); // those not fixed yet, in the order of y and the matrix
+    std::iota(unknown.begin(), unknown.end(), 0);
+    for (Eigen::Index left = n; left > 0; --left)
     {
-      if (step % 8 == 0 && this->M.cancelled())
+      if (left % 8 == 0 && this->M.cancelled())
       {
         return false;
       }
-      Eigen::Index best = -1;
-      double least = 0.0;
-      for (Eigen::Index i = 0; i < n; ++i)
-      {
-        const double off = std::round(this->Y[i]) - this->Y[i];
-        const double cost = off * off / std::max(inverse(i, i), 1e-300);
-        if (!fixed[i] && (best < 0 || cost < least))
-        {
-          best = i;
-          least = cost;
-        }
-      }
-      const double value = std::round(this->Y[best]);
+      const Eigen::Index best = cheapest(y, inverse, unknown, left);
+      const double value = std::round(y[best]);
+      this->Y[unknown[best]] = value;
       const double pivot = std::max(inverse(best, best), 1e-300);
-      const Eigen::VectorXd column = inverse.col(best);
-      this->Y += column * ((value - this->Y[best]) / pivot);
-      inverse -= column * column.transpose() / pivot;
-      this->Y[best] = value;
-      fixed[best] = 1;
+      const double change = (value - y[best]) / pivot;
+      const Eigen::Index last = left - 1;
+      inverse.col(best).head(left).swap(inverse.col(last).head(left));
+      inverse.row(best).head(left).swap(inverse.row(last).head(left));
+      std::swap(y[best], y[last]);
+      std::swap(unknown[best], unknown[last]);
+      const auto column = inverse.col(last).head(last);
+      y.head(last) += column * change;
+      for (Eigen::Index j = 0; j < last; ++j)
+      {
+        inverse.col(j).head(last).array() -= column.array() * column[j] / pivot;
+      }
     }
-    this->Y = this->Y.array().round();
     this->improve();
     return !this->M.cancelled();
+  }
+
+  /// Place, among the first `left`, of the whole unknown whose rounding costs least.
+  static Eigen::Index cheapest(const Eigen::VectorXd& y, const Eigen::MatrixXd& inverse,
+    const std::vector<Eigen::Index>& unknown, Eigen::Index left)
+  {
+    Eigen::Index best = -1;
+    double least = 0.0;
+    for (Eigen::Index i = 0; i < left; ++i)
+    {
+      const double off = std::round(y[i]) - y[i];
+      const double cost = off * off / std::max(inverse(i, i), 1e-300);
+      if (best < 0 || cost < least || (cost == least && unknown[i] < unknown[best]))
+      {
+        best = i;
+        least = cost;
+      }
+    }
+    return best;
   }
 
   void improve()
@@ -418,7 +446,7 @@ private:
   Sparse BaseMixed;            ///< Hry without stiffening
   Sparse Reduced;              ///< L^-1 P Hry
   Eigen::VectorXd BaseInverse; ///< of the diagonal factor
-  Eigen::MatrixXd Hyy;
+  Eigen::MatrixXd Hyy;         ///< lower half
   Eigen::MatrixXd Schur;
   Eigen::VectorXd Br;
   Eigen::VectorXd By;

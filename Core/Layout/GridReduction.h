@@ -12,7 +12,8 @@ namespace bsr
 Eigen::SparseMatrix<double> forwardSolved(const SparseFactors<Eigen::SparseMatrix<double>>& factors,
   const Eigen::SparseMatrix<double>& b, Monitor& monitor);
 
-/// own - R^T diag(weight) R, which is symmetric; incomplete once cancelled.
+/// own - R^T diag(weight) R, which is symmetric (of own, the lower half is given); incomplete once
+/// cancelled.
 Eigen::MatrixXd schurComplement(const Eigen::MatrixXd& own, const Eigen::SparseMatrix<double>& r,
   const Eigen::VectorXd& weight, Monitor& monitor);
 

@@ -55,8 +55,9 @@ class LocalCoarsener
 {
 public:
   /// \param cell2 squared side of quads, mean over the samples
+  /// \param monitor that of what follows too: once cancelled, nothing but draft() is of use
   LocalCoarsener(const LayoutDraft& draft, const ReferenceSurface& reference,
-    const CoarsenOptions& options, const Bounds& bounds, double cell2)
+    const CoarsenOptions& options, const Bounds& bounds, double cell2, Monitor& monitor)
       : E(draft),
         Reference(reference),
         Samples(reference.Samples),
@@ -71,7 +72,7 @@ public:
         Loss(2 * draft.Mesh.Quads.size(), 0.0),
         Cell2(cell2)
   {
-    parallelFor(0, static_cast<std::int64_t>(this->Side.size()), 64,
+    parallelForUntilCancelled(0, static_cast<std::int64_t>(this->Side.size()), 64, monitor,
       [&](std::int64_t first, std::int64_t last)
       {
         for (std::int64_t v = first; v < last; ++v)
@@ -81,9 +82,13 @@ public:
       });
     for (Index v = 0; v < static_cast<Index>(this->Normal.size()); ++v)
     {
+      if (v % 256 == 0 && monitor.cancelled())
+      {
+        return;
+      }
       this->onSurface(v, draft.Mesh.Points[v]);
     }
-    this->assign(draft.Mesh);
+    this->assign(draft.Mesh, monitor);
     this->SamplesPerQuad = std::max(1.0, static_cast<double>(this->Samples.size()) / options.Quads);
   }
 
@@ -180,22 +185,23 @@ protected:
   }
 
   /// Gives each sample its nearest quad.
-  void assign(const QuadMesh& mesh)
+  void assign(const QuadMesh& mesh, Monitor& monitor)
   {
     const NearestQuad nearest(mesh);
     std::vector<Index> quad(this->Samples.size());
     this->Distance.resize(this->Samples.size());
-    parallelFor(0, static_cast<std::int64_t>(quad.size()), 64,
-      [&](std::int64_t first, std::int64_t last)
-      {
-        for (std::int64_t i = first; i < last; ++i)
+    const bool all =
+      parallelForUntilCancelled(0, static_cast<std::int64_t>(quad.size()), 64, monitor,
+        [&](std::int64_t first, std::int64_t last)
         {
-          const QuadHit hit = nearest.find(this->Samples[i].Point);
-          quad[i] = hit.Quad;
-          this->Distance[i] = std::sqrt(hit.SquaredDistance);
-        }
-      });
-    for (std::size_t i = 0; i < quad.size(); ++i)
+          for (std::int64_t i = first; i < last; ++i)
+          {
+            const QuadHit hit = nearest.find(this->Samples[i].Point);
+            quad[i] = hit.Quad;
+            this->Distance[i] = std::sqrt(hit.SquaredDistance);
+          }
+        });
+    for (std::size_t i = 0; i < quad.size() && all; ++i)
     {
       this->Held[quad[i]].push_back(static_cast<Index>(i));
     }

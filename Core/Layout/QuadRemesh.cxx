@@ -333,7 +333,7 @@ Status layOutComponent(TriangleSurface& s, int quads, bool last, const QuadRemes
     }
   }
   layout.Seconds.Decimation += clock.lap();
-  ReferenceSurface reference(s);
+  ReferenceSurface reference(s, monitor);
   reference.Samples = surfaceSamples(s, 400 + 12 * quads);
   SubMonitor laying(monitor, 0.4, 1.0);
   auto found = speck ? Result<FieldLayout>(FieldLayout{std::move(made), LayoutStage::Box})

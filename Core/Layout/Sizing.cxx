@@ -102,7 +102,7 @@ Sizing::Sizing(const TriangleSurface& s, double cell, QuadSizing kind, const Siz
   {
     return;
   }
-  this->Tree = TriangleTree(s.Points, std::move(triangles));
+  this->Tree = TriangleTree(s.Points, std::move(triangles), monitor);
   this->Cell = cell;
   this->Factor.assign(this->Area.size(), 1.0);
   if (kind != QuadSizing::Uniform)

@@ -14,7 +14,11 @@ constexpr double Shift = 0.37; ///< of the curve between two rounds
 
 Status decimate(TriangleSurface& s, const DecimateOptions& options, Monitor& monitor)
 {
-  QuadricCollapse work(s);
+  QuadricCollapse work(s, monitor);
+  if (monitor.cancelled())
+  {
+    return Status::cancelled();
+  }
   Index left = work.faces();
   double done = 0.0;
   for (int round = 0; round < MostRounds; ++round)

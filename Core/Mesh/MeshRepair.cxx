@@ -19,11 +19,13 @@ using Triangle = std::array<Index, 3>;
 constexpr double MergeDistance = 1e-7; ///< of the bounding box's diagonal
 constexpr Index Open = -1;             ///< twin of a half-edge at a boundary
 constexpr Index Crowded = -2;          ///< not decided yet: three or more faces
+constexpr std::size_t Portion = 65536; ///< steps between two questions
 
 class Repairer
 {
 public:
-  Repairer(const TriangleMesh& mesh, RepairReport& report) : Report(report)
+  Repairer(const TriangleMesh& mesh, RepairReport& report, Monitor& monitor)
+      : Report(report), Asked(monitor)
   {
     this->M.Points = mesh.Points;
     this->M.Faces = mesh.Triangles;
@@ -34,22 +36,22 @@ public:
     report.Faces.assign(this->M.Faces.size(), 0);
   }
 
-  Result<ManifoldMesh> run(Monitor& monitor)
+  Result<ManifoldMesh> run()
   {
+    Monitor& monitor = this->Asked;
     this->dropDegenerate();
-    if (!monitor.cancelled())
-    {
-      this->match();
-    }
-    monitor.progress(0.3);
-    if (monitor.cancelled())
+    if (monitor.cancelled() || !this->match())
     {
       return Status::cancelled();
     }
+    monitor.progress(0.3);
     if (this->HasBoundary && this->mergeBoundaryPoints())
     {
       this->dropDegenerate();
-      this->match();
+      if (monitor.cancelled() || !this->match())
+      {
+        return Status::cancelled();
+      }
     }
     if (this->M.Faces.empty())
     {
@@ -62,7 +64,7 @@ public:
     {
       return Status::cancelled();
     }
-    if (!this->orient())
+    if (!this->orient() && !monitor.cancelled())
     {
       return Status::invalidInput("The surface is one-sided (a Moebius strip); it has no layout. "
                                   "Cut it open first.");
@@ -72,6 +74,10 @@ public:
       return Status::cancelled();
     }
     this->splitFans();
+    if (monitor.cancelled())
+    {
+      return Status::cancelled();
+    }
     return std::move(this->M);
   }
 
@@ -81,6 +87,8 @@ private:
   Index apex(Index h) const { return this->vertex(TriangleSurface::prev(h)); }
   Index halfEdges() const { return static_cast<Index>(3 * this->M.Faces.size()); }
   Index upper(Index h) const { return std::max(this->vertex(h), this->end(h)); }
+  /// Asked once in a while of the steps of a loop.
+  bool cancelledAt(std::size_t step) { return step % Portion == 0 && this->Asked.cancelled(); }
   void mark(Index face, FaceRepair what) { this->Report.Faces[this->M.Source[face]] |= what; }
 
   void dropFaces(const std::vector<std::uint8_t>& drop, FaceRepair why, Index& count)
@@ -119,20 +127,21 @@ private:
     }
   }
 
-  /// Finds twins whatever the orientation, and drops repeated faces.
-  void match()
+  /// Finds twins whatever the orientation, and drops repeated faces. False: cancelled.
+  bool match()
   {
-    this->bucketHalfEdges();
-    if (this->dropDuplicates())
+    if (!this->bucketHalfEdges() || (this->dropDuplicates() && !this->bucketHalfEdges()))
     {
-      this->bucketHalfEdges();
+      return false;
     }
     const std::vector<Index>& twin = this->M.Twin;
     this->HasBoundary = std::find(twin.begin(), twin.end(), Open) != twin.end();
+    return true;
   }
 
   /// Half-edges by the lower of their ends, then by the other end; twins where an edge has two.
-  void bucketHalfEdges()
+  /// False: cancelled.
+  bool bucketHalfEdges()
   {
     const Index nh = this->halfEdges();
     this->First.assign(this->M.Points.size() + 1, 0);
@@ -145,11 +154,16 @@ private:
     std::vector<Index> at(this->First.begin(), this->First.end() - 1);
     for (Index h = 0; h < nh; ++h)
     {
+      if (this->cancelledAt(h))
+      {
+        return false;
+      }
       this->Bucket[at[std::min(this->vertex(h), this->end(h))]++] = h;
     }
     this->M.Twin.assign(nh, Open);
     this->Special.assign(this->M.Points.size(), 0);
-    parallelFor(0, static_cast<std::int64_t>(this->M.Points.size()), 4096,
+    return parallelForUntilCancelled(0, static_cast<std::int64_t>(this->M.Points.size()), 4096,
+      this->Asked,
       [&](std::int64_t first, std::int64_t last)
       {
         for (std::int64_t v = first; v < last; ++v)
@@ -238,13 +252,17 @@ private:
     return any;
   }
 
-  /// Merges coincident points at boundaries; false if there were none.
+  /// Merges coincident points at boundaries; false if there were none, or if cancelled.
   bool mergeBoundaryPoints()
   {
     std::vector<std::uint8_t> border(this->M.Points.size(), 0);
     Eigen::AlignedBox3d box;
     for (Index h = 0; h < this->halfEdges(); ++h)
     {
+      if (this->cancelledAt(h))
+      {
+        return false;
+      }
       box.extend(this->M.Points[this->vertex(h)]);
       if (this->M.Twin[h] == Open)
       {
@@ -267,6 +285,10 @@ private:
     bool any = false;
     for (std::size_t i = 0; i < order.size(); ++i)
     {
+      if (i % 1024 == 0 && this->Asked.cancelled())
+      {
+        return false;
+      }
       for (std::size_t j = i + 1; j < order.size() && order[j].first - order[i].first <= near; ++j)
       {
         const Vec3& p = this->M.Points[order[i].second];
@@ -341,7 +363,8 @@ private:
   }
 
   /// Orients faces alike and numbers components; false on a one-sided surface. Edges that were
-  /// paired by choice are crossed last and opened where that makes a surface one-sided.
+  /// paired by choice are crossed last and opened where that makes a surface one-sided. False once
+  /// cancelled, too.
   bool orient()
   {
     this->M.Component.assign(this->M.Faces.size(), -1);
@@ -355,6 +378,10 @@ private:
     }
     for (std::size_t f = 0; f < turned.size(); ++f)
     {
+      if (this->cancelledAt(f))
+      {
+        return false;
+      }
       if (turned[f])
       {
         ++this->Report.TurnedFaces;
@@ -377,6 +404,10 @@ private:
     {
       const Index f = queue.back();
       queue.pop_back();
+      if (this->cancelledAt(all.size()))
+      {
+        return false;
+      }
       all.push_back(f);
       area[turned[f]] += this->areaOf(f);
       for (Index h = 3 * f; h < 3 * f + 3; ++h)
@@ -452,13 +483,17 @@ private:
     }
   }
 
-  /// Gives each fan of faces at a vertex its own vertex.
+  /// Gives each fan of faces at a vertex its own vertex; stops once cancelled.
   void splitFans()
   {
     std::vector<std::uint8_t> seen(this->M.Twin.size(), 0);
     std::vector<std::uint8_t> used(this->M.Points.size(), 0);
     for (Index h = 0; h < this->halfEdges(); ++h)
     {
+      if (this->cancelledAt(h))
+      {
+        return;
+      }
       if (seen[h])
       {
         continue;
@@ -508,6 +543,7 @@ private:
 
   ManifoldMesh M;
   RepairReport& Report;
+  Monitor& Asked;
   std::vector<Index> First; ///< per vertex: its part of Bucket
   std::vector<Index> Bucket;
   std::vector<std::uint8_t> Special; ///< per vertex: an edge there has repeated or many faces
@@ -548,6 +584,6 @@ Result<ManifoldMesh> repairMesh(const TriangleMesh& mesh, RepairReport& report, 
   {
     return s;
   }
-  return Repairer(mesh, report).run(monitor);
+  return Repairer(mesh, report, monitor).run();
 }
 } // namespace bsr

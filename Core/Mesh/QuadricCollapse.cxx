@@ -32,7 +32,7 @@ void permute(std::vector<T>& values, const std::vector<Index>& order)
 }
 } // namespace
 
-QuadricCollapse::QuadricCollapse(TriangleSurface& s)
+QuadricCollapse::QuadricCollapse(TriangleSurface& s, Monitor& monitor)
     : S(s),
       Quadrics(s.Points.size()),
       Version(s.Points.size(), 0),
@@ -41,7 +41,7 @@ QuadricCollapse::QuadricCollapse(TriangleSurface& s)
 {
   // Relative to a corner of the object, so that large coordinates cost no digits.
   this->Origin = s.Points.front();
-  parallelFor(0, s.vertices(), 1024,
+  parallelForUntilCancelled(0, s.vertices(), 1024, monitor,
     [&](std::int64_t first, std::int64_t last)
     { this->buildQuadrics(static_cast<Index>(first), static_cast<Index>(last)); });
 }

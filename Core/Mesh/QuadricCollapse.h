@@ -17,7 +17,8 @@ struct CollapseLimits
 class QuadricCollapse
 {
 public:
-  explicit QuadricCollapse(TriangleSurface& s);
+  /// Once cancelled, of no use.
+  QuadricCollapse(TriangleSurface& s, Monitor& monitor);
 
   /// Triangles that are not virtual.
   Index faces() const;

@@ -398,6 +398,12 @@ std::vector<SurfaceSample> surfaceSamples(const TriangleSurface& s, int count)
 
 ReferenceSurface::ReferenceSurface(const TriangleSurface& s)
 {
+  Monitor quiet;
+  *this = ReferenceSurface(s, quiet);
+}
+
+ReferenceSurface::ReferenceSurface(const TriangleSurface& s, Monitor& monitor)
+{
   std::vector<std::array<Index, 3>> faces;
   std::vector<std::array<Index, 3>> creases;
   for (Index f = 0; f < s.faces(); ++f)
@@ -414,8 +420,8 @@ ReferenceSurface::ReferenceSurface(const TriangleSurface& s)
       creases.push_back({s.start(h), s.end(h), s.end(h)});
     }
   }
-  this->Faces = TriangleTree(s.Points, std::move(faces));
-  this->Creases = TriangleTree(s.Points, std::move(creases));
+  this->Faces = TriangleTree(s.Points, std::move(faces), monitor);
+  this->Creases = TriangleTree(s.Points, std::move(creases), monitor);
 }
 
 Status remesh(TriangleSurface& s, const ReferenceSurface& reference, const EdgeLength& edgeLength,

@@ -29,6 +29,7 @@ struct ReferenceSurface
 
   ReferenceSurface() = default;
   explicit ReferenceSurface(const TriangleSurface& s);
+  ReferenceSurface(const TriangleSurface& s, Monitor& monitor); ///< see TriangleTree
 };
 
 /// The edge length wanted at a place.

@@ -22,8 +22,8 @@ std::uint64_t spread(std::uint64_t x)
   return (x | (x << 2)) & 0x1249249249249249ULL;
 }
 
-/// Old index of each new vertex.
-std::vector<Index> curveOrder(const TriangleSurface& s, double shift)
+/// Old index of each new vertex; none if cancelled.
+std::vector<Index> curveOrder(const TriangleSurface& s, double shift, Monitor& monitor)
 {
   Eigen::AlignedBox3d box;
   for (Index v = 0; v < s.vertices(); ++v)
@@ -37,7 +37,7 @@ std::vector<Index> curveOrder(const TriangleSurface& s, double shift)
   const double scale = ((1 << Bits) - 1) / ((1.0 + shift) * size);
   const Vec3 origin = box.min() - Vec3::Constant(shift * size);
   std::vector<std::pair<std::uint64_t, Index>> keys(s.Points.size());
-  parallelFor(0, s.vertices(), 4096,
+  const bool all = parallelForUntilCancelled(0, s.vertices(), 4096, monitor,
     [&](std::int64_t first, std::int64_t last)
     {
       for (std::int64_t v = first; v < last; ++v)
@@ -55,6 +55,10 @@ std::vector<Index> curveOrder(const TriangleSurface& s, double shift)
         keys[v] = {code, static_cast<Index>(v)};
       }
     });
+  if (!all)
+  {
+    return {};
+  }
   parallelSort(keys.begin(), keys.end());
   std::vector<Index> order(keys.size());
   for (std::size_t i = 0; i < keys.size(); ++i)
@@ -112,13 +116,17 @@ std::vector<Index> inverse(const std::vector<Index>& order)
 
 std::vector<Index> sortAlongCurve(TriangleSurface& s, double shift, Monitor& monitor)
 {
-  std::vector<Index> vertices = curveOrder(s, shift);
+  std::vector<Index> vertices = curveOrder(s, shift, monitor);
   if (monitor.cancelled())
   {
     return {};
   }
   const std::vector<Index> vertexRank = inverse(vertices);
   const std::vector<Index> faces = faceOrder(s, vertexRank);
+  if (monitor.cancelled())
+  {
+    return {};
+  }
   const std::vector<Index> faceRank = inverse(faces);
   if (monitor.cancelled())
   {
@@ -128,7 +136,7 @@ std::vector<Index> sortAlongCurve(TriangleSurface& s, double shift, Monitor& mon
   std::vector<Index> vertex(s.Vertex.size());
   std::vector<Index> opposite(s.Vertex.size());
   std::vector<std::uint8_t> crease(s.Vertex.size());
-  parallelFor(0, s.faces(), 4096,
+  const bool all = parallelForUntilCancelled(0, s.faces(), 4096, monitor,
     [&](std::int64_t first, std::int64_t last)
     {
       for (std::int64_t f = first; f < last; ++f)
@@ -142,7 +150,7 @@ std::vector<Index> sortAlongCurve(TriangleSurface& s, double shift, Monitor& mon
         }
       }
     });
-  if (monitor.cancelled())
+  if (!all || monitor.cancelled())
   {
     return {};
   }

@@ -12,8 +12,9 @@ namespace bsr
 namespace
 {
 constexpr Index LeafSize = 6;
-constexpr double Near = 1e-6;  ///< barycentric coordinate of points that may be beyond a side
-constexpr double Sound = 1e-8; ///< squared, twice the area over the square of the longest side
+constexpr Index Portion = 4096; ///< triangles halved between two questions, about
+constexpr double Near = 1e-6;   ///< barycentric coordinate of points that may be beyond a side
+constexpr double Sound = 1e-8;  ///< squared, twice the area over the square of the longest side
 constexpr double Slack = 1.0 - 1e-9; ///< of lower bounds, for rounding
 
 Vec3 nearestOnSegment(const Vec3& p, const Vec3& a, const Vec3& b)
@@ -79,6 +80,13 @@ Vec3 nearestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& 
 }
 
 TriangleTree::TriangleTree(std::vector<Vec3> points, std::vector<std::array<Index, 3>> triangles)
+{
+  Monitor quiet;
+  *this = TriangleTree(std::move(points), std::move(triangles), quiet);
+}
+
+TriangleTree::TriangleTree(
+  std::vector<Vec3> points, std::vector<std::array<Index, 3>> triangles, Monitor& monitor)
     : Points(std::move(points)), Triangles(std::move(triangles))
 {
   std::vector<Vec3> centers;
@@ -103,7 +111,7 @@ TriangleTree::TriangleTree(std::vector<Vec3> points, std::vector<std::array<Inde
   if (!this->Order.empty())
   {
     this->Nodes.reserve(this->Triangles.size());
-    this->build(this->Order, centers, 0, static_cast<Index>(this->Order.size()));
+    this->build(this->Order, centers, 0, static_cast<Index>(this->Order.size()), monitor);
   }
 }
 
@@ -116,8 +124,8 @@ void TriangleTree::grow(Node& node, Index triangle) const
   }
 }
 
-Index TriangleTree::build(
-  std::vector<Index>& order, const std::vector<Vec3>& centers, Index first, Index last)
+Index TriangleTree::build(std::vector<Index>& order, const std::vector<Vec3>& centers, Index first,
+  Index last, Monitor& monitor)
 {
   const auto id = static_cast<Index>(this->Nodes.size());
   Node node;
@@ -132,7 +140,7 @@ Index TriangleTree::build(
     high = high.cwiseMax(centers[order[i]]);
   }
   this->Nodes.push_back(node);
-  if (last - first <= LeafSize)
+  if (last - first <= LeafSize || (last - first >= Portion && monitor.cancelled()))
   {
     this->Nodes[id].First = first;
     this->Nodes[id].Count = last - first;
@@ -145,8 +153,8 @@ Index TriangleTree::build(
   std::nth_element(order.begin() + first, order.begin() + middle, order.begin() + last,
     [&](Index a, Index b)
     { return centers[a][axis] != centers[b][axis] ? centers[a][axis] < centers[b][axis] : a < b; });
-  const Index left = this->build(order, centers, first, middle);
-  const Index second = this->build(order, centers, middle, last);
+  const Index left = this->build(order, centers, first, middle, monitor);
+  const Index second = this->build(order, centers, middle, last, monitor);
   Node& made = this->Nodes[id];
   made.First = second;
   made.LowCross = this->Nodes[left].LowCross.cwiseMin(this->Nodes[second].LowCross);

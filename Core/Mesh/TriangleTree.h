@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Common/Monitor.h"
 #include "Common/Types.h"
 
 #include <limits>
@@ -26,6 +27,9 @@ class TriangleTree
 public:
   TriangleTree() = default;
   TriangleTree(std::vector<Vec3> points, std::vector<std::array<Index, 3>> triangles);
+  /// Once cancelled, what is left of the tree is not halved further: queries stay right, but slow.
+  TriangleTree(
+    std::vector<Vec3> points, std::vector<std::array<Index, 3>> triangles, Monitor& monitor);
 
   bool empty() const { return this->Triangles.empty(); }
   NearestOnTriangle nearest(const Vec3& p) const;
@@ -56,7 +60,8 @@ private:
   /// Improves `best` by a triangle.
   void visit(const Vec3& p, Index triangle, NearestOnTriangle& best) const;
   void boundCrosses(Node& node) const;
-  Index build(std::vector<Index>& order, const std::vector<Vec3>& centers, Index first, Index last);
+  Index build(std::vector<Index>& order, const std::vector<Vec3>& centers, Index first, Index last,
+    Monitor& monitor);
   void grow(Node& node, Index triangle) const;
 
   std::vector<Vec3> Points;

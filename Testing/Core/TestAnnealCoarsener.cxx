@@ -7,6 +7,7 @@
 #include "Tunnels.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 using namespace bsr;
 using bsr::coarsening::AnnealCoarsener;
@@ -33,7 +34,8 @@ public:
 
   AnnealCoarsener coarsener(const LayoutDraft& draft) const
   {
-    return {draft, this->Reference, this->Options, {LeastShape, 1e9, -5.0, 1e9}, 1.0};
+    Monitor monitor;
+    return {draft, this->Reference, this->Options, {LeastShape, 1e9, -5.0, 1e9}, 1.0, monitor};
   }
 
   /// The layout that annealing leads to.
@@ -137,6 +139,37 @@ TEST(AnnealCoarsener, IsCancelled)
   Cancelled monitor;
   EXPECT_FALSE(coarsener.annealTo(40, monitor));
   EXPECT_FALSE(coarsener.improve(monitor));
+}
+
+TEST(AnnealCoarsener, AsksWhileSamplesFindTheirQuads)
+{
+  // With one thread all questions are asked where they are counted.
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  Annealing annealing(bsrtest::tunnels(2));
+  annealing.Reference.Samples = surfaceSamples(annealing.Surface, 5000);
+  const auto asked = [&](long most)
+  {
+    struct Count : Monitor
+    {
+      explicit Count(long most) : Most(most) {}
+      bool cancelled() override { return ++this->Asked > this->Most; }
+      long Most;
+      long Asked = 0;
+    } monitor(most);
+    AnnealCoarsener coarsener(annealing.Fine, annealing.Reference, annealing.Options,
+      {LeastShape, 1e9, -5.0, 1e9}, 1.0, monitor);
+    const long before = monitor.Asked;
+    const int fewer = static_cast<int>(annealing.Fine.Mesh.Quads.size()) - 1;
+    const bool done = coarsener.annealTo(fewer, monitor);
+    EXPECT_EQ(done, monitor.Asked <= most);
+    return before;
+  };
+  const long all = asked(1000000);
+  EXPECT_GE(all, 5000 / 64);
+  for (long most : {0L, all / 4, all / 2, all - 1})
+  {
+    EXPECT_LE(asked(most), most + 8) << most; // no work is done after the answer
+  }
 }
 
 TEST(AnnealCoarsener, TipsOnlyWhereAllowed)

@@ -220,6 +220,58 @@ TEST(Decimate, LargeSurfaceKeepsTopologyAndPlace)
   EXPECT_LT(std::sqrt(worst), 3.0 * options.MaximumError);
 }
 
+/// Says yes from a question on.
+struct StopAfter : Monitor
+{
+  explicit StopAfter(long most) : Most(most) {}
+  bool cancelled() override { return ++this->Asked > this->Most; }
+  long Most;
+  long Asked = 0;
+};
+
+TEST(MeshRepair, AsksInProportionToItsWork)
+{
+  // With one thread all questions are asked where they are counted.
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  constexpr long many = 1000000;
+  const auto asked = [](const TriangleMesh& mesh, long most)
+  {
+    RepairReport report;
+    StopAfter monitor(most);
+    const auto surfaces = buildSurfaces(mesh, {}, report, monitor);
+    EXPECT_EQ(surfaces.status().code(), most < many ? StatusCode::Cancelled : StatusCode::Ok);
+    return monitor.Asked;
+  };
+  const TriangleMesh mesh = bumpyTorus(500, 300);
+  const long all = asked(mesh, many);
+  EXPECT_GT(all, 2 * asked(bumpyTorus(250, 150), many));
+  EXPECT_GT(all, 3 * 900000 / 65536); // half-edges are gone through three times
+  for (long i = 0; i < 5; ++i)
+  {
+    const long most = i * all / 5;
+    EXPECT_LE(asked(mesh, most), most + 4) << i; // no work is done after the answer
+  }
+}
+
+TEST(TriangleTree, IsRightHoweverEarlyItIsCancelled)
+{
+  const TriangleMesh mesh = bumpyTorus(200, 100);
+  const TriangleTree whole(mesh.Points, mesh.Triangles);
+  StopAfter never(1000000);
+  const TriangleTree asking(mesh.Points, mesh.Triangles, never);
+  EXPECT_GE(never.Asked, 2 * 40000 / 4096 - 8);
+  for (long most : {0, 1, 5})
+  {
+    StopAfter monitor(most);
+    const TriangleTree tree(mesh.Points, mesh.Triangles, monitor);
+    for (std::size_t i = 0; i < mesh.Points.size(); i += 997)
+    {
+      const Vec3 p = 1.1 * mesh.Points[i] + Vec3(0.1, 0.2, 0.3);
+      EXPECT_EQ(tree.nearest(p).SquaredDistance, whole.nearest(p).SquaredDistance);
+    }
+  }
+}
+
 TEST(Decimate, IsDeterministicAndCanBeCancelled)
 {
   RepairReport report;
