@@ -16,10 +16,11 @@ public:
   {
   }
 
-  bool run()
+  /// False if an edge is left, or cancelled.
+  bool run(Monitor& monitor)
   {
     const Index most = 2 * this->G.quads() + 20;
-    for (int pass = 0; pass < 200 && this->G.quads() <= most; ++pass)
+    for (int pass = 0; pass < 200 && this->G.quads() <= most && !monitor.cancelled(); ++pass)
     {
       this->G.removeLoose(this->vertices());
       const auto repeated = this->G.repeatedEdges();
@@ -37,9 +38,9 @@ public:
   }
 
   /// Rotates the edges that gain most, as long as any does.
-  void even()
+  void even(Monitor& monitor)
   {
-    for (int pass = 0; pass < 400; ++pass)
+    for (int pass = 0; pass < 400 && !monitor.cancelled(); ++pass)
     {
       this->index();
       Index best = -1;
@@ -184,14 +185,15 @@ private:
 };
 } // namespace
 
-bool mendGraph(QuadGraph& graph, std::vector<Vec3>& points, std::vector<VertexKind>& kind)
+bool mendGraph(
+  QuadGraph& graph, std::vector<Vec3>& points, std::vector<VertexKind>& kind, Monitor& monitor)
 {
   Mender mender(graph, points, kind);
-  if (!mender.run())
+  if (!mender.run(monitor))
   {
     return false;
   }
-  mender.even();
+  mender.even(monitor);
   return true;
 }
 

@@ -1,6 +1,6 @@
 #include "Layout/MorseLayout.h"
 
-#include "Common/Parallel.h"
+#include "Common/ParallelItems.h"
 #include "Layout/ParametrizedLayout.h"
 #include "Layout/RelaxLayout.h"
 #include "Mesh/LaplaceSpectrum.h"
@@ -41,8 +41,8 @@ public:
   Status take(const std::vector<Eigenfunction>& functions, bool count, Monitor& monitor)
   {
     std::vector<std::vector<Candidate>> found(functions.size());
-    Status status = inGroups(functions.size(), monitor,
-      [&](std::size_t i) { found[i] = this->layouts(functions[i], count); });
+    const bool all = parallelItems(functions.size(), monitor,
+      [&](std::size_t i, Monitor& m) { found[i] = this->layouts(functions[i], count, m); });
     for (auto& list : found)
     {
       for (Candidate& c : list)
@@ -50,7 +50,7 @@ public:
         this->Found.push_back(std::move(c));
       }
     }
-    return status;
+    return all ? Status::ok() : Status::cancelled();
   }
 
   /// Relaxes the candidates that promise most; the best one first.
@@ -59,11 +59,11 @@ public:
     std::stable_sort(this->Found.begin(), this->Found.end(),
       [](const Candidate& a, const Candidate& b) { return a.Guess < b.Guess; });
     this->Found.resize(std::min(most, this->Found.size()));
-    Status status =
-      inGroups(this->Found.size(), monitor, [&](std::size_t i) { this->judge(this->Found[i]); });
+    const bool all = parallelItems(this->Found.size(), monitor,
+      [&](std::size_t i, Monitor& m) { this->judge(this->Found[i], m); });
     std::stable_sort(this->Found.begin(), this->Found.end(),
       [](const Candidate& a, const Candidate& b) { return a.Cost < b.Cost; });
-    return status;
+    return all ? Status::ok() : Status::cancelled();
   }
 
   /// The number of quads asked for is kept where there is a choice.
@@ -77,37 +77,17 @@ public:
   std::vector<Candidate> Found;
 
 private:
-  /// work(i) for each i, some at a time in parallel, so that the monitor is asked between.
-  template <class Work>
-  static Status inGroups(std::size_t count, Monitor& monitor, const Work& work)
-  {
-    constexpr std::size_t group = 4;
-    for (std::size_t first = 0; first < count; first += group)
-    {
-      if (monitor.cancelled())
-      {
-        return Status::cancelled();
-      }
-      parallelFor(static_cast<std::int64_t>(first),
-        static_cast<std::int64_t>(std::min(count, first + group)), 1,
-        [&](std::int64_t begin, std::int64_t end)
-        {
-          for (std::int64_t i = begin; i < end; ++i)
-          {
-            work(static_cast<std::size_t>(i));
-          }
-        });
-    }
-    return Status::ok();
-  }
-
-  std::vector<Candidate> layouts(const Eigenfunction& function, bool count) const
+  std::vector<Candidate> layouts(const Eigenfunction& function, bool count, Monitor& monitor) const
   {
     const auto [low, high] = std::minmax_element(function.Values.begin(), function.Values.end());
     const double noise = this->Options.Persistence * (*high - *low);
     std::vector<double> values = function.Values;
     smoothBoundaries(this->Fine, noise, values);
     const MorseGradient gradient = morseGradient(this->Fine, std::move(values));
+    if (monitor.cancelled())
+    {
+      return {};
+    }
     const auto pairs = persistencePairs(this->Fine, gradient);
     const auto end = std::find_if(
       pairs.begin(), pairs.end(), [&](const PersistencePair& p) { return p.Persistence > noise; });
@@ -121,10 +101,13 @@ private:
       c.Cancelled = n;
       MorseGradient g = gradient;
       cancelPairs(this->Fine, pairs, n, g);
-      c.Cells = morseCells(this->Fine, g);
-      if (c.Cells.Problem.empty())
+      if (!monitor.cancelled())
       {
-        this->mend(c);
+        c.Cells = morseCells(this->Fine, g);
+        if (c.Cells.Problem.empty() && !monitor.cancelled())
+        {
+          this->mend(c, monitor);
+        }
       }
       found.push_back(std::move(c));
       return found.back().quads();
@@ -139,13 +122,17 @@ private:
   }
 
   /// From cells to a valid layout, if they give one.
-  void mend(Candidate& c) const
+  void mend(Candidate& c, Monitor& monitor) const
   {
     QuadGraph graph = c.Cells.Graph;
     std::vector<Vec3> points = c.Cells.Points;
     std::vector<VertexKind> kind = c.Cells.Kind;
-    if (!mendGraph(graph, points, kind))
+    if (!mendGraph(graph, points, kind, monitor))
     {
+      if (monitor.cancelled())
+      {
+        return;
+      }
       subdivideGraph(graph, points, kind);
       c.Subdivisions = 1;
     }
@@ -160,13 +147,13 @@ private:
     }
   }
 
-  void judge(Candidate& c) const
+  void judge(Candidate& c, Monitor& monitor) const
   {
     if (c.quads() == 0)
     {
       return;
     }
-    Monitor quiet;
+    QuietMonitor quiet(monitor);
     const Status status = relaxLayout(c.Draft, this->Reference, 40, quiet);
     if (status)
     {

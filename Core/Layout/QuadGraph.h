@@ -60,9 +60,10 @@ public:
  * Turns a graph into one without repeated edges and loose vertices, by local operations that keep
  * it a surface of its topology: loose quads are closed, repeated edges are rotated, or cut with
  * their chord. Then edges are rotated where that makes the numbers of edges at vertices evener.
- * False: some repeated edge is left.
+ * False: some repeated edge is left, or cancelled.
  */
-bool mendGraph(QuadGraph& graph, std::vector<Vec3>& points, std::vector<VertexKind>& kind);
+bool mendGraph(
+  QuadGraph& graph, std::vector<Vec3>& points, std::vector<VertexKind>& kind, Monitor& monitor);
 
 /// Every quad in 2 x 2: no edge is repeated afterwards.
 void subdivideGraph(QuadGraph& graph, std::vector<Vec3>& points, std::vector<VertexKind>& kind);

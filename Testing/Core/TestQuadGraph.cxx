@@ -102,7 +102,8 @@ TEST(QuadGraph, NarrowRingsAreMended)
   {
     Grid g = torusGrid(n, 2);
     EXPECT_FALSE(g.Graph.repeatedEdges().empty());
-    if (!mendGraph(g.Graph, g.Points, g.Kind))
+    Monitor monitor;
+    if (!mendGraph(g.Graph, g.Points, g.Kind, monitor))
     {
       subdivideGraph(g.Graph, g.Points, g.Kind);
     }
