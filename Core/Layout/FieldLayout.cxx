@@ -1,5 +1,6 @@
 #include "Layout/FieldLayout.h"
 
+#include "Layout/ApproachLayout.h"
 #include "Layout/Coarsen.h"
 #include "Layout/LeastQuads.h"
 #include "Layout/PairTriangles.h"
@@ -103,7 +104,12 @@ Status coarsenTo(const Task& task, LayoutDraft& draft, Monitor& monitor)
     return s;
   }
   SubMonitor second(monitor, 0.8, 1.0);
-  return relaxLayout(draft, task.Reference, 40, second);
+  if (Status s = relaxLayout(draft, task.Reference, 40, second); !s)
+  {
+    return s;
+  }
+  return crowded(task.Euler, task.Quads) ? approachLayout(draft, task.Reference, options, second)
+                                         : Status::ok();
 }
 
 /// By the map of a finer layout, which has room for what is narrow, made coarser.

@@ -1,6 +1,7 @@
 #pragma once
 
-// The local operations of coarsenLayout; used by Coarsen.cxx and AnnealCoarsener alone.
+// The local operations of coarsenLayout; used by Coarsen.cxx, AnnealCoarsener and
+// ApproachLayout.cxx alone.
 
 #include "Common/Parallel.h"
 #include "Layout/Coarsen.h"

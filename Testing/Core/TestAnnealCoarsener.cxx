@@ -1,7 +1,9 @@
 // Layouts brought down to where their vertices have all the edges that are allowed.
 #include "Layout/AnnealCoarsener.h"
+#include "Layout/ApproachLayout.h"
 #include "Layout/PairTriangles.h"
 #include "Layout/QuadRemesh.h"
+#include "Layout/RelaxLayout.h"
 #include "Mesh/BuildSurface.h"
 #include "PolygonTopology.h"
 #include "Tunnels.h"
@@ -73,6 +75,62 @@ public:
   bool cancelled() override { return true; }
 };
 } // namespace
+
+/// A layout near its limit, as it is before it is taken closer to the surface.
+class Approaching : public Annealing
+{
+public:
+  Approaching(const TriangleMesh& mesh, int quads) : Annealing(mesh)
+  {
+    this->Reference.Samples = surfaceSamples(this->Surface, 400 + 12 * quads);
+    this->Side = std::sqrt(this->Surface.area() / quads);
+    this->Options.Quads = quads;
+    this->Options.Side = [side = this->Side](const Vec3&) { return side; };
+    this->Before = this->annealed(quads);
+    Monitor monitor;
+    EXPECT_TRUE(relaxLayout(this->Before, this->Reference, 40, monitor));
+  }
+
+  LayoutDraft approached() const
+  {
+    LayoutDraft draft = this->Before;
+    Monitor monitor;
+    ApproachReport report;
+    EXPECT_TRUE(approachLayout(draft, this->Reference, this->Options, monitor, &report));
+    EXPECT_LT(report.After, 0.9 * report.Before);
+    return draft;
+  }
+
+  /// In sides of quads.
+  LayoutDistance distance(const LayoutDraft& draft) const
+  {
+    Monitor monitor;
+    LayoutDistance d = layoutDistance(draft.Mesh, this->Surface, this->Reference, {}, monitor);
+    d.Maximum /= this->Side;
+    d.Mean /= this->Side;
+    return d;
+  }
+
+  /// Share of the quads that look away from the surface at their corners.
+  double away(const LayoutDraft& draft) const
+  {
+    int count = 0;
+    const auto& p = draft.Mesh.Points;
+    for (const auto& q : draft.Mesh.Quads)
+    {
+      Vec3 normal = Vec3::Zero();
+      for (const Index v : q)
+      {
+        normal += this->Reference.Faces.normal(this->Reference.Faces.nearest(p[v]).Triangle);
+      }
+      count += (p[q[2]] - p[q[0]]).cross(p[q[3]] - p[q[1]]).dot(normal) < 0.0 ? 1 : 0;
+    }
+    return static_cast<double>(count) / static_cast<double>(draft.Mesh.Quads.size());
+  }
+
+  LayoutDraft Before;
+  double Side = 1.0;
+};
 
 TEST(AnnealCoarsener, SaturatesVertices)
 {
@@ -198,4 +256,42 @@ TEST(AnnealCoarsener, TipsOnlyWhereAllowed)
   const LayoutReport report = checkLayout(editor.draft().Mesh);
   EXPECT_TRUE(report.Valid) << report.Problem;
   EXPECT_EQ(report.Euler, 1);
+}
+
+TEST(ApproachLayout, TakesLayoutsCloserAtTheSameCount)
+{
+  double awayBefore = 0.0;
+  double awayAfter = 0.0;
+  for (const bool open : {false, true})
+  {
+    const Approaching a(open ? bsrtest::openTunnels(2) : bsrtest::tunnels(2), open ? 36 : 44);
+    const LayoutDraft after = a.approached();
+    expectSound(after, open ? -18 : -16, open ? 2 : 0);
+    EXPECT_EQ(after.Mesh.Quads.size(), a.Before.Mesh.Quads.size());
+    EXPECT_LT(a.distance(after).Maximum, 0.75 * a.distance(a.Before).Maximum);
+    EXPECT_LT(a.distance(after).Maximum, 0.8);
+    EXPECT_LT(a.distance(after).Mean, 0.75 * a.distance(a.Before).Mean);
+    EXPECT_LT(a.distance(after).Mean, 0.2);
+    awayBefore += 0.5 * a.away(a.Before);
+    awayAfter += 0.5 * a.away(after);
+  }
+  EXPECT_LT(awayAfter, 0.9 * awayBefore);
+  EXPECT_LT(awayAfter, 0.4);
+}
+
+TEST(ApproachLayout, SameEachTime)
+{
+  const Approaching a(bsrtest::openTunnels(2), 36);
+  const LayoutDraft one = a.approached();
+  const LayoutDraft other = a.approached();
+  EXPECT_EQ(one.Mesh.Quads, other.Mesh.Quads);
+  EXPECT_EQ(one.Mesh.Points, other.Mesh.Points);
+}
+
+TEST(ApproachLayout, IsCancelled)
+{
+  const Approaching a(bsrtest::tunnels(2), 44);
+  LayoutDraft draft = a.Before;
+  Cancelled monitor;
+  EXPECT_EQ(approachLayout(draft, a.Reference, a.Options, monitor).code(), StatusCode::Cancelled);
 }
