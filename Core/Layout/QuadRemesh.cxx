@@ -68,7 +68,7 @@ Status checkSizeField(const TriangleMesh& mesh, const QuadRemeshOptions& o)
 }
 
 /// Negative regions as numbers that are not in use (holes of surfaces are regions below 0): pairs
-/// of new and old ones.
+/// of new and old ones, both growing.
 std::vector<std::array<Index, 2>> renumberRegions(std::vector<Index>& regions)
 {
   std::vector<std::array<Index, 2>> renamed;
@@ -90,10 +90,7 @@ std::vector<std::array<Index, 2>> renumberRegions(std::vector<Index>& regions)
   }
   for (Index& r : regions)
   {
-    for (std::size_t i = 0; r < 0 && i < renamed.size(); ++i)
-    {
-      r = r == renamed[i][1] ? renamed[i][0] : r;
-    }
+    r = r < 0 ? renamed[std::lower_bound(used.begin(), used.end(), r) - used.begin()][0] : r;
   }
   return renamed;
 }
@@ -506,9 +503,9 @@ Result<QuadLayout> quadRemesh(
   clock.lap();
   for (Index& region : layout.Mesh.Region)
   {
-    const auto old = std::find_if(
-      renamed.begin(), renamed.end(), [&](const auto& pair) { return pair[0] == region; });
-    region = old == renamed.end() ? region : (*old)[1];
+    const auto old = std::lower_bound(renamed.begin(), renamed.end(), region,
+      [](const auto& pair, Index r) { return pair[0] < r; });
+    region = old != renamed.end() && (*old)[0] == region ? (*old)[1] : region;
   }
   layout.Report = checkLayout(layout.Mesh);
   monitor.progress(1.0);
