@@ -25,7 +25,7 @@ constexpr int MostAttempts = 5;    ///< with each field
 constexpr int MostFailures = 4;    ///< before the first layout
 constexpr double Shrink = 0.6;     ///< of cells where a map folds
 constexpr double Around = 2.0;     ///< cells around a fold that shrink
-constexpr double Crowded = 0.4;    ///< singular vertices a quad that leave no room for a map
+constexpr double Crowded = 0.8;    ///< singular vertices a quad that leave no room for a map
 constexpr double Hopeless = 0.08;  ///< share of triangles that fold: a finer map would, too
 
 /// Side of a grid cell wanted in each triangle; incomplete once cancelled.

@@ -155,6 +155,19 @@ TEST(LayoutFeatures, SharpEdgesOfAThinPlate)
   sound(plate(), sharp(100));
 }
 
+TEST(LayoutFeatures, ThinPlatesOfTwelveTriangles)
+{
+  for (int quads : {60, 100, 150})
+  {
+    QuadRemeshOptions options;
+    options.NumberOfQuads = quads;
+    const QuadLayout layout = sound(plate(), options);
+    const double side = 200.0 * std::sqrt(2.0 / static_cast<double>(layout.Mesh.Quads.size()));
+    EXPECT_LT(layout.Distance.Maximum, 1.2 * side) << quads << " quads";
+    EXPECT_LT(layout.Distance.Mean, 0.1 * side) << quads << " quads";
+  }
+}
+
 TEST(LayoutFeatures, NeedlesOfAFan)
 {
   std::vector<Vec2> circle;
