@@ -81,7 +81,7 @@ private:
   void bendings()
   {
     const TriangleSurface& s = this->S;
-    const std::vector<Vec3> form = faceCurvature(s, this->Inside);
+    const std::vector<Vec3> form = faceCurvature(s, this->Inside, this->M);
     this->Bending.assign(static_cast<std::size_t>(this->Rows), Complex(0.0));
     for (Index f = 0; f < s.faces(); ++f)
     {

@@ -18,7 +18,8 @@ namespace
 constexpr double PoorCost = 25.0; ///< of a layout: a finer map made coarser may do better
 constexpr double WeakCost = 40.0; ///< of a layout: a still finer map may do better
 constexpr double BadCost = 60.0;  ///< of a layout: paired triangles may do better
-constexpr double MostMiss = 0.1;  ///< of the count; beyond, other roads are taken
+constexpr double NoLayout = std::numeric_limits<double>::infinity();
+constexpr double MostMiss = 0.1; ///< of the count; beyond, other roads are taken
 constexpr double MissCost = 30.0;
 constexpr double Fewer = 0.9;  ///< folds of a map of twice the quads, or it is no use
 constexpr int MostFine = 6000; ///< quads of a map to be made coarser
@@ -39,7 +40,7 @@ struct Task
 struct Candidates
 {
   LayoutDraft Draft;
-  double Cost = std::numeric_limits<double>::infinity();
+  double Cost = NoLayout;
   LayoutStage Stage = LayoutStage::Parametrized;
   bool Folded = true;
   bool NoMaps = false;                             ///< it is no use to try finer maps
@@ -241,18 +242,18 @@ bool bestLayout(const Task& task, Candidates& best, Monitor& monitor)
     }
   }
   double done = 0.4;
-  for (int factor : {2, 4})
+  for (int factor : {2, 4, 8, 16})
   {
     const int fine = factor * task.Quads;
-    if (best.Cost >= (factor == 2 ? PoorCost : WeakCost) && !best.NoMaps && fine <= MostFine &&
-        -20 * task.Euler < fine)
+    const double poor = factor == 2 ? PoorCost : factor == 4 ? WeakCost : NoLayout;
+    if (best.Cost >= poor && !best.NoMaps && fine <= MostFine && -20 * task.Euler < fine)
     {
-      SubMonitor finer(monitor, done, done + 0.2);
+      SubMonitor finer(monitor, done, done + 0.1);
       if (!goesOn(coarsenedRoad(task, fine, best, finer)))
       {
         return false;
       }
-      done += 0.2;
+      done += 0.1;
     }
   }
   if (task.Options.MapsOnly)

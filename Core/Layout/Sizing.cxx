@@ -19,7 +19,7 @@ constexpr double Growth = 0.5;   ///< of the side per distance
 std::vector<double> bending(
   const TriangleSurface& s, const std::vector<std::uint8_t>& inside, Monitor& monitor)
 {
-  const std::vector<Vec3> form = faceCurvature(s, inside);
+  const std::vector<Vec3> form = faceCurvature(s, inside, monitor);
   std::vector<double> value(form.size(), 0.0);
   for (std::size_t f = 0; f < form.size(); ++f)
   {

@@ -14,7 +14,8 @@ FaceFrame faceFrame(const TriangleSurface& s, Index face)
   return {x, s.areaNormal(face).normalized().cross(x)};
 }
 
-std::vector<Vec3> faceCurvature(const TriangleSurface& s, const std::vector<std::uint8_t>& inside)
+std::vector<Vec3> faceCurvature(
+  const TriangleSurface& s, const std::vector<std::uint8_t>& inside, Monitor& monitor)
 {
   std::vector<Vec3> normal(s.Points.size(), Vec3::Zero());
   for (Index f = 0; f < s.faces(); ++f)
@@ -33,7 +34,7 @@ std::vector<Vec3> faceCurvature(const TriangleSurface& s, const std::vector<std:
     n.normalize();
   }
   std::vector<Vec3> form(s.Region.size(), Vec3::Zero());
-  parallelFor(0, s.faces(), 512,
+  parallelForUntilCancelled(0, s.faces(), 512, monitor,
     [&](std::int64_t first, std::int64_t last)
     {
       for (auto f = static_cast<Index>(first); f < last; ++f)
