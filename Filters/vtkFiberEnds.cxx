@@ -39,18 +39,38 @@ bsr::Result<std::vector<bsr::EndMouth>> mouthsFrom(vtkPolyData* raw)
   return mouths;
 }
 
-/// Points of the outer and inner wall.
-std::vector<bsr::Vec3> wallFrom(vtkPolyData* raw)
+/// The raw surface with its sides; without the array Side all of it is outer wall.
+bsr::Result<bsr::FiberWall> wallFrom(vtkPolyData* raw)
 {
-  std::vector<bsr::Vec3> wall;
-  vtkDataArray* side = raw->GetPointData()->GetArray("Side");
-  for (vtkIdType i = 0; i < raw->GetNumberOfPoints(); ++i)
+  bsr::FiberWall wall;
+  if (raw->GetNumberOfPoints() == 0)
   {
-    if (!side || side->GetComponent(i, 0) <= 1.0)
+    return wall;
+  }
+  if (raw->GetNumberOfPolys() + raw->GetNumberOfStrips() > 0)
+  {
+    auto mesh = bsr::triangleMeshFrom(raw);
+    if (!mesh)
     {
-      bsr::Vec3 p;
-      raw->GetPoint(i, p.data());
-      wall.push_back(p);
+      return mesh.status();
+    }
+    wall.Surface = std::move(*mesh);
+  }
+  else
+  {
+    auto points = bsr::pointsFrom(raw->GetPoints());
+    if (!points)
+    {
+      return points.status();
+    }
+    wall.Surface.Points = std::move(*points);
+  }
+  wall.Side.assign(wall.Surface.Points.size(), 0);
+  if (vtkDataArray* side = raw->GetPointData()->GetArray("Side"))
+  {
+    for (std::size_t i = 0; i < wall.Side.size(); ++i)
+    {
+      wall.Side[i] = static_cast<std::uint8_t>(side->GetComponent(static_cast<vtkIdType>(i), 0));
     }
   }
   return wall;
@@ -68,7 +88,12 @@ bsr::Result<bsr::FiberEnds> findEnds(vtkPolyData* surface, vtkPolyData* raw, bsr
   {
     return mouths.status();
   }
-  return bsr::findFiberEnds(*mesh, *mouths, wallFrom(raw), monitor);
+  const auto wall = wallFrom(raw);
+  if (!wall)
+  {
+    return wall.status();
+  }
+  return bsr::findFiberEnds(*mesh, *mouths, *wall, monitor);
 }
 
 void attach(const bsr::FiberEnds& ends, vtkPolyData* output)

@@ -4,8 +4,10 @@
 #include "Mesh/FiberRim.h"
 #include "Mesh/PointTree.h"
 #include "Mesh/RegionCut.h"
+#include "Mesh/WallRim.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -14,11 +16,16 @@ namespace bsr
 {
 namespace
 {
-constexpr int Smoothing = 3;      ///< rounds on the function that is cut
-constexpr double Snap = 0.2;      ///< of an edge
-constexpr double DrawReach = 0.5; ///< of the mouth's radius: how far the surface moves along
-constexpr double MostShift = 0.2; ///< of the mouth's radius
-constexpr double BandReach = 0.2; ///< of the mouth's radius: how far the crest may be off the rim
+constexpr int Smoothing = 3;       ///< rounds on the function that is cut
+constexpr double Snap = 0.2;       ///< of an edge
+constexpr double DrawReach = 0.5;  ///< of the mouth's radius: how far the surface moves along
+constexpr double MostShift = 0.2;  ///< of the mouth's radius
+constexpr double BandReach = 0.2;  ///< of the mouth's radius: how far the crest may be off the rim
+constexpr int DrawSteps = 3;       ///< to the rim of the raw wall
+constexpr double ClearerBy = 0.05; ///< how much clearer another rim's end of the wall must be
+
+/// Weights of radius against height that a rim is sought with.
+constexpr std::array<double, 3> Leans{0.8, 1.15, 1.5};
 
 /// Vertices reachable from `seed` over edges between vertices for which inside() holds.
 template <class Inside>
@@ -272,14 +279,22 @@ double meanEdge(const TriangleMesh& mesh)
 
 /// How far each vertex is off the wall's points, less one and a half edges; 0 where there are no
 /// points.
-std::vector<double> offWall(const TriangleMesh& mesh, const std::vector<Vec3>& wall)
+std::vector<double> offWall(const TriangleMesh& mesh, const FiberWall& wall)
 {
   std::vector<double> off(mesh.Points.size(), 0.0);
-  if (wall.empty())
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < wall.Surface.Points.size() && i < wall.Side.size(); ++i)
+  {
+    if (wall.Side[i] <= 1)
+    {
+      points.push_back(wall.Surface.Points[i]);
+    }
+  }
+  if (points.empty())
   {
     return off;
   }
-  const PointTree tree(wall);
+  const PointTree tree(std::move(points));
   const double free = 1.5 * meanEdge(mesh);
   parallelFor(0, static_cast<std::int64_t>(off.size()), 1024,
     [&](std::int64_t begin, std::int64_t end)
@@ -293,46 +308,94 @@ std::vector<double> offWall(const TriangleMesh& mesh, const std::vector<Vec3>& w
   return off;
 }
 
-/// Tries to cut one end; says why not.
-std::string cutEnd(
-  FiberEnds& ends, const EndMouth& mouth, const std::vector<Vec3>& wall, double lean)
+/// An end that was cut, or why it was not.
+struct CutEnd
+{
+  TriangleMesh Surface;
+  std::vector<Index> Rim;
+  double Clear = 0.0; ///< how clearly the wall ends there, 0..1
+  std::string Why;
+};
+
+/// What rims are found on: not what earlier ends have cut, so that the ends do not depend on their
+/// order.
+struct RimSources
+{
+  const TriangleMesh& Closed;
+  std::vector<double> Off; ///< how far each of its vertices is off the wall
+  WallSamples Wall;
+};
+
+/// Tries to cut one end. The surface is cut along its own rim and then moved to that and on to the
+/// raw wall's, in small steps of which none folds it.
+CutEnd cutEnd(const FiberEnds& ends, const EndMouth& mouth, const RimSources& sources, double lean)
+{
+  CutEnd end;
+  MouthFrame frame(mouth.Center, mouth.Direction);
+  const auto rim = findRim(sources.Closed, sources.Off, mouth, lean, frame);
+  if (!rim)
+  {
+    end.Why = "the surface does not go round it";
+    return end;
+  }
+  auto value = endFunction(ends.Surface, frame, *rim, mouth.Radius);
+  if (!value)
+  {
+    end.Why = "no cap lies over it";
+    return end;
+  }
+  end.Surface = ends.Surface;
+  cutAtZero(end.Surface, *value, Snap);
+  const auto region = static_cast<Index>(ends.Rims.size() + 1);
+  if (!mark(end.Surface, *value, region))
+  {
+    end.Why = "it overlaps another end";
+    return end;
+  }
+  auto loops = regionLoops(end.Surface, region);
+  if (loops.size() != 1 || regionEuler(end.Surface, region) != 1)
+  {
+    end.Why = "its region is not a disc";
+    return end;
+  }
+  end.Rim = std::move(loops.front());
+  drawToRim(end.Surface, end.Rim, frame, *rim, mouth.Radius);
+  const WallRim wall = rimOnWall(sources.Wall, frame, *rim);
+  end.Clear = wall.Clear;
+  for (int step = 0; step < DrawSteps && wall.Clear > 0.0; ++step)
+  {
+    drawToRim(end.Surface, end.Rim, frame, wall.Rim, mouth.Radius);
+  }
+  return end;
+}
+
+/// Cuts one end along the rim where the wall ends most clearly; says why not.
+std::string cutBest(FiberEnds& ends, const EndMouth& mouth, const RimSources& sources)
 {
   if (!(mouth.Radius > 0.0) || !(mouth.Direction.norm() > 0.0) || !mouth.Center.allFinite())
   {
     return "its radius or direction is not valid";
   }
-  MouthFrame frame(mouth.Center, mouth.Direction);
-  const auto rim = findRim(ends.Surface, offWall(ends.Surface, wall), mouth, lean, frame);
-  if (!rim)
+  CutEnd best = cutEnd(ends, mouth, sources, Leans.front());
+  for (std::size_t i = 1; i < Leans.size(); ++i)
   {
-    return "the surface does not go round it";
+    CutEnd other = cutEnd(ends, mouth, sources, Leans[i]);
+    if (other.Why.empty() && (!best.Why.empty() || other.Clear > best.Clear + ClearerBy))
+    {
+      best = std::move(other);
+    }
   }
-  auto value = endFunction(ends.Surface, frame, *rim, mouth.Radius);
-  if (!value)
+  if (best.Why.empty())
   {
-    return "no cap lies over it";
+    ends.Surface = std::move(best.Surface);
+    ends.Rims.push_back(std::move(best.Rim));
   }
-  TriangleMesh cut = ends.Surface;
-  cutAtZero(cut, *value, Snap);
-  const auto region = static_cast<Index>(ends.Rims.size() + 1);
-  if (!mark(cut, *value, region))
-  {
-    return "it overlaps another end";
-  }
-  auto loops = regionLoops(cut, region);
-  if (loops.size() != 1 || regionEuler(cut, region) != 1)
-  {
-    return "its region is not a disc";
-  }
-  drawToRim(cut, loops.front(), frame, *rim, mouth.Radius);
-  ends.Surface = std::move(cut);
-  ends.Rims.push_back(std::move(loops.front()));
-  return {};
+  return best.Why;
 }
 } // namespace
 
 Result<FiberEnds> findFiberEnds(const TriangleMesh& closedSurface,
-  const std::vector<EndMouth>& mouths, const std::vector<Vec3>& wall, Monitor& monitor)
+  const std::vector<EndMouth>& mouths, const FiberWall& wall, Monitor& monitor)
 {
   if (closedSurface.Triangles.empty())
   {
@@ -340,6 +403,7 @@ Result<FiberEnds> findFiberEnds(const TriangleMesh& closedSurface,
                                 "the Closing filter's output at 0.");
   }
   FiberEnds ends;
+  const RimSources sources{closedSurface, offWall(closedSurface, wall), sampleWall(wall)};
   ends.Surface = closedSurface;
   ends.Surface.Region.assign(closedSurface.Triangles.size(), 0);
   for (std::size_t m = 0; m < mouths.size(); ++m)
@@ -348,11 +412,7 @@ Result<FiberEnds> findFiberEnds(const TriangleMesh& closedSurface,
     {
       return Status::cancelled();
     }
-    std::string why = cutEnd(ends, mouths[m], wall, 1.15);
-    for (const double lean : {1.5, 0.8})
-    {
-      why = why.empty() ? why : cutEnd(ends, mouths[m], wall, lean);
-    }
+    const std::string why = cutBest(ends, mouths[m], sources);
     if (!why.empty())
     {
       ends.Note += (ends.Note.empty() ? "Mouth " : " Mouth ") + std::to_string(m + 1) +

@@ -4,7 +4,9 @@
 #include "Common/Status.h"
 #include "Mesh/Meshes.h"
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 namespace bsr
 {
@@ -14,6 +16,14 @@ struct EndMouth
   Vec3 Center;
   Vec3 Direction; ///< outwards
   double Radius = 0.0;
+};
+
+/// A fiber's raw surface; no triangles: not known.
+struct FiberWall
+{
+  TriangleMesh Surface;
+  /// Of each vertex: 0 outer wall, 1 inner wall, others neither.
+  std::vector<std::uint8_t> Side;
 };
 
 struct FiberEnds
@@ -34,15 +44,16 @@ struct FiberEnds
  * Around the axis of the mouth the rim is sought in every direction as the surface's outermost
  * point under 45 degrees between axis and radius; the axis is then turned to the rim's plane and
  * the search repeated. A smooth closed curve is fitted along it, in which webs of the surface over
- * debris count little. Where `wall`, the points of the fiber's raw surface, is given, places far
- * from it are such webs and are no rim. A function that is zero on that curve, positive on the
- * end's side of the 45 degree cone through it, is cut at zero: triangles are split, vertices close
- * to the curve taken as they are. The surface within half a mouth's radius is then moved to the
- * curve, by at most a fifth of that radius: the rims are smooth, however rough the wall.
+ * debris count little. Where `wall`, the fiber's raw surface, is given, places far from its walls
+ * are such webs and are no rim, and the curve is moved to where the raw outer wall ends
+ * (rimOnWall()). A function that is zero on that curve, positive on the end's side of the 45 degree
+ * cone through it, is cut at zero: triangles are split, vertices close to the curve taken as they
+ * are. The surface within half a mouth's radius is then moved to the curve, by at most a fifth of
+ * that radius: the rims are smooth, however rough the wall.
  *
  * A mouth is left out (Note says why) unless its region is one disc with one simple loop around
  * it, apart from the others.
  */
 Result<FiberEnds> findFiberEnds(const TriangleMesh& closedSurface,
-  const std::vector<EndMouth>& mouths, const std::vector<Vec3>& wall, Monitor& monitor);
+  const std::vector<EndMouth>& mouths, const FiberWall& wall, Monitor& monitor);
 } // namespace bsr

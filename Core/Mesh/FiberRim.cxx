@@ -1,6 +1,7 @@
 #include "Mesh/FiberRim.h"
 
-#include <Eigen/Cholesky>
+#include "Mesh/SmoothRing.h"
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
@@ -19,38 +20,7 @@ constexpr double RadiusWaves = 8.0; ///< around, that a rim's radius follows
 constexpr double Spread = 0.02;     ///< of the mouth's radius: of detours that count in full
 constexpr int Rounds = 12;          ///< of weighing
 
-using Values = Eigen::Matrix<double, Bins, 1>;
-
-/// Least squares with weights and a penalty on the second derivative that halves waves of the given
-/// number around.
-class SmoothRing
-{
-public:
-  explicit SmoothRing(double waves)
-  {
-    const double stiffness = std::pow(2.0 * MouthFrame::Pi * waves / Bins, -4.0);
-    this->Penalty.setZero(Bins, Bins);
-    for (int i = 0; i < Bins; ++i)
-    {
-      const int before = (i + Bins - 1) % Bins;
-      const int after = (i + 1) % Bins;
-      Values d = Values::Zero();
-      d[before] = 1.0;
-      d[i] = -2.0;
-      d[after] = 1.0;
-      this->Penalty += stiffness * d * d.transpose();
-    }
-  }
-  Values through(const Values& value, const Values& weight) const
-  {
-    Eigen::MatrixXd normal = this->Penalty;
-    normal.diagonal() += weight;
-    return normal.ldlt().solve(weight.cwiseProduct(value));
-  }
-
-private:
-  Eigen::MatrixXd Penalty;
-};
+using Values = Eigen::VectorXd;
 
 /// A smooth curve along most of a rim. What lies behind it and farther out at once has little
 /// weight: the closed surface spans webs from the rim to debris on the wall, and the rim follows
@@ -59,9 +29,9 @@ FiberRim robustRim(const FiberRim& rim, double radius, double heightWaves, doubl
 {
   const SmoothRing smoothHeight(heightWaves);
   const SmoothRing smoothRadius(radiusWaves);
-  const Eigen::Map<const Values> h(rim.Height.data());
-  const Eigen::Map<const Values> r(rim.Radius.data());
-  Values weight = Values::Ones();
+  const Eigen::Map<const Values> h(rim.Height.data(), Bins);
+  const Eigen::Map<const Values> r(rim.Radius.data(), Bins);
+  Values weight = Values::Ones(Bins);
   Values height;
   Values wide;
   for (int round = 0; round < Rounds; ++round)
@@ -77,8 +47,8 @@ FiberRim robustRim(const FiberRim& rim, double radius, double heightWaves, doubl
     }
   }
   FiberRim result;
-  Values::Map(result.Height.data()) = height;
-  Values::Map(result.Radius.data()) = wide;
+  Values::Map(result.Height.data(), Bins) = height;
+  Values::Map(result.Radius.data(), Bins) = wide;
   return result;
 }
 
@@ -126,13 +96,17 @@ Vec3 MouthFrame::radial(double bin) const
   return std::cos(a) * this->U + std::sin(a) * this->V;
 }
 
-Vec2 FiberRim::at(double bin) const
+double between(const RimProfile& profile, double bin)
 {
   const double x = bin - 0.5;
   const int i = static_cast<int>(std::floor(x));
   const double t = x - i;
-  return {(1.0 - t) * ring(this->Radius, i) + t * ring(this->Radius, i + 1),
-    (1.0 - t) * ring(this->Height, i) + t * ring(this->Height, i + 1)};
+  return (1.0 - t) * ring(profile, i) + t * ring(profile, i + 1);
+}
+
+Vec2 FiberRim::at(double bin) const
+{
+  return {between(this->Radius, bin), between(this->Height, bin)};
 }
 
 std::optional<FiberRim> findRim(const TriangleMesh& mesh, const std::vector<double>& off,

@@ -43,6 +43,9 @@ const T& ring(const std::array<T, MouthFrame::Bins>& values, int i)
   return values[((i % n) + n) % n];
 }
 
+/// The value of a profile between the middles of its bins.
+double between(const RimProfile& profile, double bin);
+
 /// A fiber's rim around a mouth: for each direction its radius and height in the mouth's frame.
 struct FiberRim
 {

@@ -74,6 +74,35 @@ std::vector<EndMouth> bothMouths()
   return {{{-27.0, 0.5, 0.0}, {-1.0, 0.1, 0.0}, 7.5}, {{27.0, 0.0, 0.5}, {1.0, 0.0, 0.1}, 7.5}};
 }
 
+/// A raw surface that is outer wall all over.
+FiberWall rawWall(const TriangleMesh& mesh)
+{
+  return {mesh, std::vector<std::uint8_t>(mesh.Points.size(), 0)};
+}
+
+/// How far the tube of capsule() ends before x = 30 in each direction: a wide notch.
+double notched(const Vec3& p, double deep)
+{
+  const double a = std::atan2(p.z(), p.y()) / 1.5;
+  return deep * std::pow(std::max(0.0, 1.0 - a * a), 2.0);
+}
+
+/// The capsule with a notch in the end at x = 30, with bumps all around the body.
+TriangleMesh notchedCapsule(double deep, double rough)
+{
+  TriangleMesh mesh = capsule(4.0);
+  for (Vec3& p : mesh.Points)
+  {
+    p.x() -= notched(p, deep) * std::max(0.0, p.x() - 10.0) / 20.0;
+    const double r = std::hypot(p.y(), p.z());
+    const double bump =
+      r > 11.5 ? rough * std::sin(1.7 * p.x()) * std::sin(9.0 * std::atan2(p.z(), p.y())) : 0.0;
+    p.y() *= (r + bump) / std::max(r, 1.0);
+    p.z() *= (r + bump) / std::max(r, 1.0);
+  }
+  return mesh;
+}
+
 /// A capsule whose surface rises from the rim at x = 30 to a ridge behind it, `height` high and
 /// `width` radians to either side of y.
 TriangleMesh webbed(double width, double height)
@@ -192,11 +221,73 @@ TEST(FiberEnds, TheWallTellsWideWebs)
 {
   const TriangleMesh mesh = webbed(1.0, 12.0);
   Monitor monitor;
-  const auto ends = findFiberEnds(mesh, bothMouths(), capsule(4.0).Points, monitor);
+  const auto ends = findFiberEnds(mesh, bothMouths(), rawWall(capsule(4.0)), monitor);
   ASSERT_TRUE(ends);
   ASSERT_EQ(ends->Rims.size(), 2u) << ends->Note;
   EXPECT_LT(offRim(*ends, ends->Rims[1]).first, 1.5);
   EXPECT_LT(offRim(*ends, ends->Rims[1]).second, 3.0);
+}
+
+TEST(FiberEnds, TheRimFollowsANotchThatTheClosedSurfaceSpans)
+{
+  // A notch of 4 that the closed surface fills by half, and a rough wall the closed surface lies
+  // on.
+  const TriangleMesh raw = notchedCapsule(4.0, 0.4);
+  TriangleMesh closed = notchedCapsule(2.0, 0.0);
+  for (Vec3& p : closed.Points)
+  {
+    const double r = std::hypot(p.y(), p.z());
+    p.y() *= r > 11.5 ? 12.5 / r : 1.0;
+    p.z() *= r > 11.5 ? 12.5 / r : 1.0;
+  }
+  const auto offNotch = [](const FiberEnds& ends)
+  {
+    double sum = 0.0;
+    for (const Index v : ends.Rims[1])
+    {
+      const Vec3& p = ends.Surface.Points[v];
+      sum += std::pow(std::hypot(p.y(), p.z()) - 12.0, 2.0) +
+             std::pow(p.x() - 30.0 + notched(p, 4.0), 2.0);
+    }
+    return std::sqrt(sum / static_cast<double>(ends.Rims[1].size()));
+  };
+  Monitor monitor;
+  const auto alone = findFiberEnds(closed, bothMouths(), {}, monitor);
+  const auto ends = findFiberEnds(closed, bothMouths(), rawWall(raw), monitor);
+  ASSERT_TRUE(alone && ends);
+  ASSERT_EQ(alone->Rims.size(), 2u) << alone->Note;
+  ASSERT_EQ(ends->Rims.size(), 2u) << ends->Note;
+  EXPECT_GT(offNotch(*alone), 0.8);
+  EXPECT_LT(offNotch(*ends), 0.65);
+  TriangleMesh inside = raw; // a raw surface turned inside out is the same wall
+  for (auto& t : inside.Triangles)
+  {
+    std::swap(t[1], t[2]);
+  }
+  const auto turned = findFiberEnds(closed, bothMouths(), rawWall(inside), monitor);
+  ASSERT_TRUE(turned);
+  EXPECT_NEAR(offNotch(*turned), offNotch(*ends), 0.05);
+}
+
+TEST(FiberEnds, AGapInTheWallIsPassedStraight)
+{
+  TriangleMesh raw = capsule(4.0);
+  std::vector<std::array<Index, 3>> kept;
+  for (const auto& t : raw.Triangles)
+  {
+    const Vec3& p = raw.Points[t[0]];
+    if (p.x() < 15.0 || std::abs(std::atan2(p.z(), p.y())) > 0.4)
+    {
+      kept.push_back(t);
+    }
+  }
+  raw.Triangles = kept;
+  Monitor monitor;
+  const auto ends = findFiberEnds(capsule(4.0), bothMouths(), rawWall(raw), monitor);
+  ASSERT_TRUE(ends);
+  ASSERT_EQ(ends->Rims.size(), 2u) << ends->Note;
+  EXPECT_LT(offRim(*ends, ends->Rims[1]).first, 0.2);
+  EXPECT_LT(offRim(*ends, ends->Rims[1]).second, 0.5);
 }
 
 TEST(FiberEnds, FindsTheRimOfAWallThickerThanItsLumenIsWide)

@@ -262,7 +262,7 @@ TEST(FiberEnds, RimsFollowTheTrueRims)
       }
     }
     ASSERT_GT(count, 0.0);
-    EXPECT_LE(std::sqrt(squares / count), 1.5) << "voxels, end " << end;
+    EXPECT_LE(std::sqrt(squares / count), 0.85) << "voxels, end " << end;
     RecordProperty(
       "RimRMS" + std::to_string(static_cast<int>(end)), std::to_string(std::sqrt(squares / count)));
   }
