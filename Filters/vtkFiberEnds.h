@@ -8,12 +8,13 @@
  * whose lumen is closed has none; what is uncertain is left unmarked.
  *
  * Where the lumen opens is known from vtkEDTClassify. The rim around each opening is the closed
- * surface's outermost convex edge, sought in all directions around the opening's axis; the surface
- * is cut along it.
+ * surface's outermost convex edge, sought in all directions around the opening's axis, moved to
+ * where the raw outer wall ends; the surface is cut along it.
  *
  * Ports: 0, `Input`: the closed triangle surface (SignedDistance of vtkClosing contoured at 0);
- * 1, `RawSurface`: the output of vtkEDTClassify (method Facing Void) for the same image; only its
- * field array `LumenMouths` is used.
+ * 1, `RawSurface`: the output of vtkEDTClassify (method Facing Void) for the same image:
+ * its triangles, the point array `Side` (without it all is outer wall) and the field array
+ * `LumenMouths` are used.
  *
  * Output port 0: the surface, its triangles split along the rims, with
  * - cell array `EndRegion` (Int32): 0 body, k the k-th open end; each end is a disc bounded by one
