@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace bsr
 {
@@ -186,7 +187,7 @@ std::array<std::vector<double>, Bins> endsOfWall(const RuledWall& wall,
   std::array<std::vector<double>, Bins> cover;
   cover.fill(std::vector<double>(steps, 0.0));
   // Each sample covers an edge of height.
-  const int tall = std::max(1, static_cast<int>(edge / step + 0.5));
+  const int tall = std::max(1, static_cast<int>(std::lround(edge / step)));
   for (const WallPoint& p : points)
   {
     const double along = wall.along(p);
@@ -269,8 +270,8 @@ double findHeight(RuledWall& wall, const std::vector<WallPoint>& points, const R
 {
   const double step = std::max(0.25 * edge, 0.005 * radius);
   const int steps = static_cast<int>(2.0 * Reach * radius / step);
-  const int window =
-    std::max(1, static_cast<int>(std::max(Window * radius, LeastWindow * edge) / step + 0.5));
+  const int window = std::max(
+    1, static_cast<int>(std::lround(std::max(Window * radius, LeastWindow * edge) / step)));
   const auto score = endsOfWall(wall, points, middle, steps, step, window, edge);
   const auto path = clearestPath(score, middle, step, window * step);
   Eigen::VectorXd height(Bins);
