@@ -39,6 +39,8 @@ bsr::Result<std::vector<bsr::EndMouth>> mouthsFrom(vtkPolyData* raw)
   return mouths;
 }
 
+constexpr std::uint8_t Neither = 2; ///< wall: debris, pores, or a value that is no side
+
 /// The raw surface with its sides; without the array Side all of it is outer wall.
 bsr::Result<bsr::FiberWall> wallFrom(vtkPolyData* raw)
 {
@@ -70,7 +72,8 @@ bsr::Result<bsr::FiberWall> wallFrom(vtkPolyData* raw)
   {
     for (std::size_t i = 0; i < wall.Side.size(); ++i)
     {
-      wall.Side[i] = static_cast<std::uint8_t>(side->GetComponent(static_cast<vtkIdType>(i), 0));
+      const double value = side->GetComponent(static_cast<vtkIdType>(i), 0);
+      wall.Side[i] = value == 0.0 ? 0 : value == 1.0 ? 1 : Neither;
     }
   }
   return wall;
